@@ -4,6 +4,7 @@ pub mod frame;
 pub mod geometry;
 pub mod phase;
 pub mod plane;
+pub mod statistics;
 
 pub use flags::PixelFlags;
 pub use frame::{Channels, Frame, IntegrationTime};
