@@ -1,0 +1,344 @@
+//! Measuring a distance sweep: mean amplitude and mean distance in the central window, frame by frame.
+
+use std::collections::BTreeMap;
+
+use super::runs::{Place, Runs};
+use super::warning::FitWarning;
+use super::{CalibrateError, CalibrateSettings};
+use crate::frame::{Frame, IntegrationTime};
+use crate::noise;
+use crate::plane::Window;
+use crate::terms::Source;
+use crate::terms::cubic::{Decay, DecayPoint};
+
+/// Frames with more invalid pixels in the window than this share are left out.
+const INVALID_SHARE: f64 = 0.05;
+/// Decays whose median signal-to-noise ratio is lower are left out: their distances are not reliable.
+const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
+/// Consecutive frames within this distance of the first belong to one position.
+const POSITION_TOLERANCE_M: f64 = 0.005;
+/// The window's mean distance may scatter by this many standard errors before the target counts as moving.
+const STANDARD_ERRORS: f64 = 8.0;
+/// A distance that changes by more than this share across the window is a tilted target.
+const TILT_SHARE: f64 = 0.02;
+
+/// A flat target at several distances and integration times, measured frame by frame.
+#[derive(Clone, Debug)]
+pub struct DistanceSweep {
+    recording: String,
+    settings: CalibrateSettings,
+    runs: Runs,
+    frames: usize,
+    unusable: usize,
+    excluded: usize,
+    /// Keyed by the bits of the time, NaN where it is unknown.
+    times: BTreeMap<u64, Vec<Position>>,
+    /// Time of the last position, so that a change of time starts a new one.
+    last_time: Option<u64>,
+    widest: Option<(usize, f64)>,
+}
+
+/// Frames of one place of the target.
+#[derive(Clone, Debug)]
+struct Position {
+    first_frame: usize,
+    measurements: Vec<Measurement>,
+}
+
+/// One frame's window.
+#[derive(Clone, Copy, Debug)]
+struct Measurement {
+    distance_m: f64,
+    distance_error_m: f64,
+    amplitude_dn: f64,
+    signal_to_noise: f64,
+    spread_m: f64,
+}
+
+/// What a distance sweep says: one decay per integration time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceDecays {
+    /// The recording.
+    pub source: Source,
+    /// Decays in the order of time, over-saturated positions and weak decays left out.
+    pub decays: Vec<Decay>,
+    /// What was left out, and what is odd about the recording.
+    pub warnings: Vec<FitWarning>,
+}
+
+impl DistanceSweep {
+    /// Starts a sweep; `recording` is the name that errors and the calibration give it.
+    #[must_use]
+    pub fn new(recording: impl Into<String>, settings: &CalibrateSettings) -> Self {
+        Self {
+            recording: recording.into(),
+            settings: settings.clone(),
+            runs: Runs::new(settings.skip_frames),
+            frames: 0,
+            unusable: 0,
+            excluded: 0,
+            times: BTreeMap::new(),
+            last_time: None,
+            widest: None,
+        }
+    }
+
+    /// Measures the next frame. Its integration time may be unknown, but not a map.
+    ///
+    /// # Errors
+    /// [`CalibrateError`] when the frame has no distance or planes that do not fit.
+    pub fn push(&mut self, frame: &Frame) -> Result<(), CalibrateError> {
+        let number = self.frames;
+        frame.check_shapes().map_err(|source| CalibrateError::Shape { frame: number, source })?;
+        let time_us = match frame.integration_time_us {
+            IntegrationTime::PerFrame(time_us) => time_us,
+            IntegrationTime::Unknown => f64::NAN,
+            IntegrationTime::PerPixel(_) => {
+                let found = "a map with a time for each pixel";
+                return Err(CalibrateError::NoSingleTime { frame: number, found });
+            }
+        };
+        let distances_m = frame.distance_m.as_ref().ok_or(CalibrateError::NoDistance { frame: number })?;
+        self.frames += 1;
+        if self.runs.push(time_us) == Place::Settling || self.settings.excludes(time_us) {
+            self.excluded += 1;
+            return Ok(());
+        }
+        let Some(measurement) = measure(frame, distances_m.values(), self.settings.window_px) else {
+            self.unusable += 1;
+            return Ok(());
+        };
+        if self.widest.is_none_or(|(_, widest)| measurement.tilt() > widest) {
+            self.widest = Some((number, measurement.tilt()));
+        }
+        self.add(time_us.to_bits(), number, measurement);
+        Ok(())
+    }
+
+    fn add(&mut self, time: u64, number: usize, measurement: Measurement) {
+        let same_time = self.last_time.replace(time) == Some(time);
+        let positions = self.times.entry(time).or_default();
+        match positions.last_mut() {
+            Some(last) if same_time && last.holds(measurement.distance_m) => {
+                last.measurements.push(measurement)
+            }
+            _ => positions.push(Position { first_frame: number, measurements: vec![measurement] }),
+        }
+    }
+
+    /// Ends the sweep: one decay per time, each starting where over-saturation ends.
+    #[must_use]
+    pub fn finish(self) -> ReferenceDecays {
+        let recording = &self.recording;
+        let mut warnings = Vec::new();
+        if self.unusable > 0 {
+            let frames = self.unusable;
+            warnings.push(FitWarning::SaturationInWindow { recording: recording.clone(), frames });
+        }
+        if let Some((frame, spread)) = self.widest.filter(|(_, spread)| *spread > TILT_SHARE) {
+            let spread_m = spread * self.distance_of(frame).unwrap_or(1.0);
+            warnings.push(FitWarning::TargetNotFronto { recording: recording.clone(), frame, spread_m });
+        }
+        let (mut decays, mut used) = (Vec::new(), 0);
+        for (&bits, positions) in &self.times {
+            warnings.extend(positions.iter().filter_map(|p| p.moved(recording)));
+            let time_us = Some(f64::from_bits(bits)).filter(|time| !time.is_nan());
+            match decay(recording, time_us, positions, &mut warnings) {
+                Some((decay, frames)) => {
+                    decays.push(decay);
+                    used += frames;
+                }
+                None => continue,
+            }
+        }
+        let frames_left_out = self.frames - used;
+        let source = Source { recording: self.recording, frames_used: used, frames_left_out };
+        ReferenceDecays { source, decays, warnings }
+    }
+
+    fn distance_of(&self, frame: usize) -> Option<f64> {
+        let positions = self.times.values().flatten();
+        let position = positions.filter(|p| p.first_frame <= frame).max_by_key(|p| p.first_frame)?;
+        position.measurements.first().map(|m| m.distance_m)
+    }
+}
+
+impl Measurement {
+    /// Change of the distance across the window, relative.
+    fn tilt(&self) -> f64 {
+        self.spread_m / self.distance_m
+    }
+}
+
+impl Position {
+    fn holds(&self, distance_m: f64) -> bool {
+        self.measurements
+            .first()
+            .is_some_and(|first| (first.distance_m - distance_m).abs() <= POSITION_TOLERANCE_M)
+    }
+
+    fn mean(&self, value: impl Fn(&Measurement) -> f64) -> f64 {
+        self.measurements.iter().map(value).sum::<f64>() / self.measurements.len() as f64
+    }
+
+    /// A range of means that noise does not explain.
+    fn moved(&self, recording: &str) -> Option<FitWarning> {
+        let distances = || self.measurements.iter().map(|m| m.distance_m);
+        let range_m =
+            distances().fold(f64::NEG_INFINITY, f64::max) - distances().fold(f64::INFINITY, f64::min);
+        let noise_m = self.mean(|m| m.distance_error_m);
+        // Half the tolerance that defines a position: no position can range over more than twice of it.
+        let moved = range_m > (STANDARD_ERRORS * noise_m).max(0.5 * POSITION_TOLERANCE_M);
+        moved.then(|| FitWarning::TargetMoved {
+            recording: recording.to_owned(),
+            frame: self.first_frame,
+            range_m,
+        })
+    }
+}
+
+/// The decay of one integration time and the frames in it; `None` when the signal is too weak.
+fn decay(
+    recording: &str,
+    integration_time_us: Option<f64>,
+    positions: &[Position],
+    warnings: &mut Vec<FitWarning>,
+) -> Option<(Decay, usize)> {
+    let mut sorted: Vec<&Position> = positions.iter().collect();
+    sorted.sort_by(|a, b| a.mean(|m| m.distance_m).total_cmp(&b.mean(|m| m.distance_m)));
+    let brightness = |p: &&Position| p.mean(|m| m.amplitude_dn);
+    let peak =
+        (0..sorted.len()).max_by(|&a, &b| brightness(&sorted[a]).total_cmp(&brightness(&sorted[b])))?;
+    if peak > 0 {
+        let from_m = sorted[peak].mean(|m| m.distance_m);
+        let recording = recording.to_owned();
+        warnings.push(FitWarning::OverSaturated { recording, integration_time_us, positions: peak, from_m });
+    }
+    let usable = &sorted[peak..];
+    let mut ratios: Vec<f64> = usable.iter().map(|p| p.mean(|m| m.signal_to_noise)).collect();
+    ratios.sort_by(f64::total_cmp);
+    let signal_to_noise = ratios[ratios.len() / 2];
+    if signal_to_noise < LEAST_SIGNAL_TO_NOISE {
+        let recording = recording.to_owned();
+        warnings.push(FitWarning::LowSignal { recording, integration_time_us, signal_to_noise });
+        return None;
+    }
+    let point = |p: &&Position| DecayPoint {
+        distance_m: p.mean(|m| m.distance_m),
+        amplitude_dn: p.mean(|m| m.amplitude_dn),
+    };
+    let points = usable.iter().map(point).collect();
+    let frames = usable.iter().map(|p| p.measurements.len()).sum();
+    Some((Decay { integration_time_us, points }, frames))
+}
+
+/// Means over the valid pixels of the window; `None` when too few of them are valid.
+fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> Option<Measurement> {
+    let shape = frame.shape();
+    let window = Window::centred(shape, window_px);
+    let valid = |i: usize| frame.is_valid(i) && distances_m[i] > 0.0 && distances_m[i].is_finite();
+    let masked = |values: &[f32]| -> Vec<f64> {
+        window.indices(shape).map(|i| if valid(i) { f64::from(values[i]) } else { f64::NAN }).collect()
+    };
+    let (amplitudes, distances) = (masked(frame.amplitude.values()), masked(distances_m));
+    let count = amplitudes.iter().filter(|a| a.is_finite()).count();
+    if (count as f64) < (1.0 - INVALID_SHARE) * amplitudes.len() as f64 || count == 0 {
+        return None;
+    }
+    let mean = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>() / count as f64;
+    let deviation = |values: &[f64]| noise::spatial(values.chunks(window.width)).unwrap_or(0.0);
+    let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
+    Some(Measurement {
+        distance_m,
+        distance_error_m: deviation(&distances) / (count as f64).sqrt(),
+        amplitude_dn,
+        signal_to_noise: amplitude_dn / deviation(&amplitudes),
+        spread_m: slope_spread(&distances, window),
+    })
+}
+
+/// Distance from one side of the window to the other: difference of the halves' means times two, whichever of
+/// the two directions has more. Means of halves, because single pixels are noisy.
+fn slope_spread(distances: &[f64], window: Window) -> f64 {
+    let half = |wanted: &dyn Fn(usize, usize) -> bool| {
+        let inside = distances
+            .iter()
+            .enumerate()
+            .filter(|(i, d)| d.is_finite() && wanted(i / window.width.max(1), i % window.width.max(1)));
+        let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, d)| (sum + d, count + 1.0));
+        sum / count
+    };
+    let rows = half(&|row, _| 2 * row < window.height) - half(&|row, _| 2 * row >= window.height);
+    let columns =
+        half(&|_, column| 2 * column < window.width) - half(&|_, column| 2 * column >= window.width);
+    let spread = |difference: f64| if difference.is_finite() { 2.0 * difference.abs() } else { 0.0 };
+    spread(rows).max(spread(columns))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plane::{Plane, Shape};
+
+    /// A board at `distance_m` with one row brighter by `texture_dn`, the only "noise" there is.
+    fn frame(time_us: f64, distance_m: f32, amplitude_dn: f32, noise_dn: f32) -> Frame {
+        let shape = Shape::new(20, 20);
+        let mut frame = Frame::new(shape);
+        let noise =
+            |row: usize, column: usize| if (row * 7 + column * 3) % 5 < 2 { noise_dn } else { -noise_dn };
+        frame.amplitude = Plane::from_fn(shape, |row, column| amplitude_dn + noise(row, column));
+        frame.distance_m = Some(Plane::filled(shape, distance_m));
+        frame.integration_time_us = IntegrationTime::PerFrame(time_us);
+        frame.flag_amplitude(Some(4000.0));
+        frame
+    }
+
+    fn finish(frames: &[Frame]) -> ReferenceDecays {
+        let mut sweep = DistanceSweep::new("board", &CalibrateSettings::default());
+        frames.iter().try_for_each(|frame| sweep.push(frame)).unwrap();
+        sweep.finish()
+    }
+
+    #[test]
+    fn frames_of_one_position_are_averaged_and_times_kept_apart() {
+        let frames = [(1000.0, 1.0), (1000.0, 1.001), (2000.0, 1.0), (1000.0, 2.0)]
+            .map(|(t, d)| frame(t, d, 500.0 / d, 1.0));
+        let found = finish(&frames);
+        let sizes: Vec<_> = found.decays.iter().map(|d| (d.integration_time_us, d.points.len())).collect();
+        assert_eq!(sizes, [(Some(1000.0), 2), (Some(2000.0), 1)]);
+        assert!((found.decays[0].points[0].distance_m - 1.0005).abs() < 1e-6);
+    }
+
+    #[test]
+    fn each_decay_starts_where_over_saturation_ends() {
+        let found =
+            finish(&[(0.5, 900.0), (0.7, 2000.0), (1.0, 1500.0)].map(|(d, a)| frame(1000.0, d, a, 1.0)));
+        let distances: Vec<f64> =
+            found.decays[0].points.iter().map(|p| (p.distance_m * 10.0).round()).collect();
+        assert_eq!(distances, [7.0, 10.0]);
+        assert!(matches!(found.warnings[0], FitWarning::OverSaturated { positions: 1, .. }));
+    }
+
+    #[test]
+    fn weak_decays_and_saturated_windows_are_left_out_with_a_warning() {
+        let found = finish(&[frame(200.0, 1.0, 30.0, 8.0), frame(9000.0, 0.5, 4000.0, 1.0)]);
+        assert!(found.decays.is_empty());
+        assert_eq!((found.source.frames_used, found.source.frames_left_out), (0, 2));
+        assert!(matches!(found.warnings[0], FitWarning::SaturationInWindow { frames: 1, .. }));
+        assert!(matches!(found.warnings[1], FitWarning::LowSignal { .. }));
+    }
+
+    #[test]
+    fn a_tilted_target_is_reported() {
+        let mut tilted = frame(1000.0, 1.0, 100.0, 1.0);
+        tilted.distance_m = Some(Plane::from_fn(tilted.shape(), |_, column| 1.0 + 0.003 * column as f32));
+        let found = finish(&[tilted]);
+        assert!(matches!(found.warnings[0], FitWarning::TargetNotFronto { frame: 0, .. }));
+    }
+
+    #[test]
+    fn a_target_that_creeps_is_reported() {
+        let found = finish(&[1.0, 1.002, 1.004].map(|d| frame(1000.0, d, 100.0, 1.0)));
+        assert!(matches!(found.warnings[0], FitWarning::TargetMoved { frame: 0, .. }));
+    }
+}

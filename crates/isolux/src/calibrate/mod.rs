@@ -1,0 +1,238 @@
+//! From recordings to a [`Calibration`]: measure sweeps frame by frame, then fit the terms they determine.
+
+mod distance_sweep;
+mod exposure_sweep;
+mod motion;
+mod runs;
+mod warning;
+
+pub use distance_sweep::{DistanceSweep, ReferenceDecays};
+pub use exposure_sweep::{ExposureCurve, ExposureSweep};
+pub use warning::FitWarning;
+
+use crate::calibration::{Calibration, NoiseFloor, Reference};
+use crate::frame::IntegrationTime;
+use crate::plane::ShapeError;
+use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
+use crate::terms::lut::{ExposureSample, LutError};
+use crate::terms::{Cubic, Lut};
+
+/// What the user decides about a calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibrateSettings {
+    /// Conditions under which every multiplier is 1.
+    pub reference: Reference,
+    /// Side of the central measurement window of a distance sweep, pixels; 20 in the paper.
+    pub window_px: usize,
+    /// Frames dropped after each change of the integration time; 50 in the paper.
+    pub skip_frames: usize,
+    /// Integration times to leave out, µs.
+    pub exclude_time_us: Vec<f64>,
+}
+
+impl Default for CalibrateSettings {
+    fn default() -> Self {
+        Self { reference: Reference::default(), window_px: 20, skip_frames: 0, exclude_time_us: Vec::new() }
+    }
+}
+
+impl CalibrateSettings {
+    /// A time is excluded when it equals one of the list to 0.01 %, more than f32 rounding and less than any
+    /// camera's step.
+    fn excludes(&self, integration_time_us: f64) -> bool {
+        let same = |excluded: &f64| (integration_time_us / excluded - 1.0).abs() < 1e-4;
+        self.exclude_time_us.iter().any(same)
+    }
+}
+
+/// Why a recording cannot serve as a sweep, or a term cannot be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CalibrateError {
+    /// Frames without a single integration time in an exposure sweep.
+    #[error(
+        "frame {frame}: integration time is {found}, one known time for the whole frame expected: \
+             an exposure sweep varies the time from frame to frame"
+    )]
+    NoSingleTime {
+        /// Frame number, from 0.
+        frame: usize,
+        /// What is there.
+        found: &'static str,
+    },
+    /// A distance sweep without distances.
+    #[error(
+        "frame {frame}: no distance channel found, one expected: a distance sweep is measured against it"
+    )]
+    NoDistance {
+        /// Frame number, from 0.
+        frame: usize,
+    },
+    /// A frame whose planes do not fit together.
+    #[error("frame {frame}: {source}")]
+    Shape {
+        /// Frame number, from 0.
+        frame: usize,
+        /// The plane.
+        source: ShapeError,
+    },
+    /// No sweep given.
+    #[error("no recording given: calibrate needs at least one exposure sweep or distance sweep")]
+    NothingToFit,
+    /// The table could not be fitted.
+    #[error("exposure sweep {recording}: {source}")]
+    Lut {
+        /// The recording.
+        recording: String,
+        /// Why.
+        source: LutError,
+    },
+    /// The cubic could not be fitted.
+    #[error("distance sweep: {0}")]
+    Cubic(#[from] CubicError),
+}
+
+/// What the fits found, for the user to judge them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitReport {
+    /// Exposure samples of each exposure sweep.
+    pub exposure_curves: Vec<ExposureCurve>,
+    /// Reference decays as they entered the cubic, with what became of them.
+    pub decays: Vec<(Decay, DecayUse)>,
+    /// Everything that the user should know or record better, also in the calibration's terms.
+    pub warnings: Vec<FitWarning>,
+}
+
+/// Fits every term that the sweeps determine.
+///
+/// # Errors
+/// [`CalibrateError`] when no sweep is given or a term cannot be fitted from what is there.
+pub fn fit(
+    settings: &CalibrateSettings,
+    camera: Option<String>,
+    exposure_curves: Vec<ExposureCurve>,
+    distance_sweeps: Vec<ReferenceDecays>,
+) -> Result<(Calibration, FitReport), CalibrateError> {
+    if exposure_curves.is_empty() && distance_sweeps.is_empty() {
+        return Err(CalibrateError::NothingToFit);
+    }
+    let mut calibration = Calibration::new(camera, settings.reference);
+    let mut warnings = Vec::new();
+    if !exposure_curves.is_empty() {
+        let lut = fit_lut(settings, &exposure_curves, &mut warnings)?;
+        calibration.terms.lut = Some(lut);
+        let floors = exposure_curves.iter().filter_map(|curve| curve.noise_floor);
+        calibration.noise_floor =
+            floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
+    }
+    let mut decays = Vec::new();
+    if !distance_sweeps.is_empty() {
+        let (cubic, uses) = fit_cubic(settings, distance_sweeps, &mut warnings)?;
+        decays = uses;
+        if calibration.terms.lut.is_none()
+            && decays.iter().all(|(decay, _)| decay.integration_time_us.is_none())
+        {
+            calibration.reference.integration_time_us = None;
+        }
+        calibration.terms.cubic = Some(cubic);
+    }
+    Ok((calibration, FitReport { exposure_curves, decays, warnings }))
+}
+
+/// One table per sweep, then their geometric mean at each time: sweeps at unlike walls differ by a factor that
+/// the normalization at the reference time has already taken out.
+fn fit_lut(
+    settings: &CalibrateSettings,
+    curves: &[ExposureCurve],
+    warnings: &mut Vec<FitWarning>,
+) -> Result<Lut, CalibrateError> {
+    let reference_us =
+        settings.reference.integration_time_us.unwrap_or(crate::calibration::REFERENCE_TIME_US);
+    let mut tables = Vec::new();
+    for curve in curves {
+        let lut = Lut::fit(&curve.samples, reference_us)
+            .map_err(|source| CalibrateError::Lut { recording: curve.source.recording.clone(), source })?;
+        warnings.extend(curve.warnings_for(&lut));
+        tables.push(lut);
+    }
+    let mut lut = match tables.as_slice() {
+        [single] => single.clone(),
+        several => {
+            let merged = merge_samples(several);
+            Lut::fit(&merged, reference_us)
+                .map_err(|source| CalibrateError::Lut { recording: "(all together)".into(), source })?
+        }
+    };
+    lut.fitted_on = curves.iter().map(|curve| curve.source.clone()).collect();
+    lut.warnings = warnings.iter().map(ToString::to_string).collect();
+    Ok(lut)
+}
+
+/// Mean curve of several tables, normalized to 1 at the reference, up to the lowest of their ends.
+fn merge_samples(tables: &[Lut]) -> Vec<ExposureSample> {
+    let end = tables.iter().map(|lut| lut.valid_integration_time_us[1]).fold(f64::INFINITY, f64::min);
+    let mut points: Vec<(f64, f64)> = tables
+        .iter()
+        .flat_map(|lut| lut.integration_time_us.iter().copied().zip(lut.multiplier.iter().map(|m| -m.ln())))
+        .filter(|(time, _)| *time <= end)
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|group| {
+            let mean = group.iter().map(|(_, log)| log).sum::<f64>() / group.len() as f64;
+            let spread = crate::terms::root_mean_square(group.iter().map(|(_, log)| log - mean));
+            ExposureSample {
+                integration_time_us: group[0].0,
+                mean_amplitude_dn: mean.exp(),
+                frame_spread: spread.unwrap_or(0.0),
+            }
+        })
+        .collect()
+}
+
+fn fit_cubic(
+    settings: &CalibrateSettings,
+    sweeps: Vec<ReferenceDecays>,
+    warnings: &mut Vec<FitWarning>,
+) -> Result<(Cubic, Vec<(Decay, DecayUse)>), CalibrateError> {
+    let mut found = Vec::new();
+    let (mut sources, mut decays) = (Vec::new(), Vec::new());
+    for sweep in sweeps {
+        found.extend(sweep.warnings);
+        sources.push(sweep.source);
+        decays.extend(sweep.decays);
+    }
+    let (mut cubic, uses) = Cubic::fit(&decays, settings.reference.distance_m)?;
+    found.extend(warning::about_decays(&decays, &uses));
+    cubic.fitted_on = sources;
+    cubic.warnings = found.iter().map(ToString::to_string).collect();
+    warnings.extend(found);
+    Ok((cubic, decays.into_iter().zip(uses).collect()))
+}
+
+/// The one time of a frame; an error message's words where there is none.
+fn single_time(time: &IntegrationTime) -> Result<f64, &'static str> {
+    match time {
+        IntegrationTime::PerFrame(time) => Ok(*time),
+        IntegrationTime::Unknown => Err("unknown"),
+        IntegrationTime::PerPixel(_) => Err("a map with a time for each pixel"),
+    }
+}
+
+impl Scaling {
+    /// In words, for reports.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::AtReference => "normalized at the reference distance",
+            Self::OntoOthers => "scaled onto the others",
+            Self::LeftOut => "left out",
+        }
+    }
+}
+
+/// The noise floor that a measured deviation stands for; none where quantization hides it.
+fn noise_floor(deviation_dn: Option<f64>, integration_time_us: f64) -> Option<NoiseFloor> {
+    deviation_dn.filter(|sd| *sd > 0.0 && sd.is_finite()).map(|sd| NoiseFloor::new(sd, integration_time_us))
+}

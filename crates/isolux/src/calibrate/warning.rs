@@ -1,0 +1,201 @@
+//! What the user should know of a fit, or record better.
+
+use std::fmt;
+
+use crate::terms::cubic::{Decay, DecayUse, Scaling};
+
+/// One finding about a recording or a fit, with its numbers.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitWarning {
+    /// The integration times of a sweep do not increase.
+    TimesNotIncreasing {
+        /// The recording.
+        recording: String,
+    },
+    /// Amplitudes drift after each change of the integration time.
+    Settling {
+        /// The recording.
+        recording: String,
+        /// First frame against last of a run, relative, median over runs.
+        relative_drift: f64,
+    },
+    /// The scene of an exposure sweep did not stand still.
+    SceneMoved {
+        /// The recording.
+        recording: String,
+        /// Time at which it stood elsewhere, µs.
+        integration_time_us: f64,
+        /// Share of the image that moved.
+        share: f64,
+    },
+    /// Few integration times.
+    TooFewTimes {
+        /// The recording.
+        recording: String,
+        /// Number found.
+        found: usize,
+    },
+    /// Pixels with the saturation code inside the range of the table.
+    SaturationInSweep {
+        /// The recording.
+        recording: String,
+        /// From this time on, µs.
+        from_us: f64,
+        /// Largest share of the pixels.
+        share: f64,
+    },
+    /// Frames of a distance sweep whose window is saturated or empty.
+    SaturationInWindow {
+        /// The recording.
+        recording: String,
+        /// Frames left out for it.
+        frames: usize,
+    },
+    /// Near positions where the amplitude falls towards the camera: over-saturation.
+    OverSaturated {
+        /// The recording.
+        recording: String,
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+        /// Positions left out.
+        positions: usize,
+        /// Usable from here on, m.
+        from_m: f64,
+    },
+    /// A decay left out because its signal is too weak.
+    LowSignal {
+        /// The recording.
+        recording: String,
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+        /// Median signal-to-noise ratio in the window.
+        signal_to_noise: f64,
+    },
+    /// The target is tilted or not flat.
+    TargetNotFronto {
+        /// The recording.
+        recording: String,
+        /// Frame with the largest spread, from 0.
+        frame: usize,
+        /// Distance from one side of the window to the other, m.
+        spread_m: f64,
+    },
+    /// The target moved while one position was recorded.
+    TargetMoved {
+        /// The recording.
+        recording: String,
+        /// First frame of the position, from 0.
+        frame: usize,
+        /// Range of the mean distances, m.
+        range_m: f64,
+    },
+    /// Few positions.
+    TooFewDistances {
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+        /// Number found.
+        found: usize,
+    },
+    /// A decay that could not be brought to the common scale.
+    NoOverlap {
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+    },
+}
+
+impl fmt::Display for FitWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TimesNotIncreasing { recording } => write!(
+                f,
+                "{recording}: the integration times do not increase throughout; a warm camera then meets other \
+                 conditions than a cold one: sweep upwards, and skip the settling frames"
+            ),
+            Self::Settling { recording, relative_drift } => write!(
+                f,
+                "{recording}: after a change of the integration time, the first frames differ from the last by \
+                 {:.1} %: drop them with --skip-frames",
+                100.0 * relative_drift
+            ),
+            Self::SceneMoved { recording, integration_time_us, share } => write!(
+                f,
+                "{recording}: at {integration_time_us} µs, {:.0} % of the image is at another distance than \
+                 usual: an exposure sweep needs a still scene",
+                100.0 * share
+            ),
+            Self::TooFewTimes { recording, found } => {
+                write!(
+                    f,
+                    "{recording}: {found} usable integration times; record 8 or more, evenly spread in ln t"
+                )
+            }
+            Self::SaturationInSweep { recording, from_us, share } => write!(
+                f,
+                "{recording}: from {from_us} µs on, up to {:.1} % of the pixels carry the saturation code and \
+                 drop out of the mean: use a darker or more distant wall",
+                100.0 * share
+            ),
+            Self::SaturationInWindow { recording, frames } => write!(
+                f,
+                "{recording}: {frames} frames left out, saturated or invalid in more than 5 % of the window: \
+                 start farther away at long integration times"
+            ),
+            Self::OverSaturated { recording, integration_time_us, positions, from_m } => write!(
+                f,
+                "{recording}, {}: {positions} positions nearer than {from_m:.3} m left out as over-saturated",
+                time(*integration_time_us)
+            ),
+            Self::LowSignal { recording, integration_time_us, signal_to_noise } => write!(
+                f,
+                "{recording}, {}: left out, the signal-to-noise ratio of {signal_to_noise:.1} is below 10 and its \
+                 distances are not reliable",
+                time(*integration_time_us)
+            ),
+            Self::TargetNotFronto { recording, frame, spread_m } => write!(
+                f,
+                "{recording}, frame {frame}: the distance changes by {:.0} mm across the window: turn the target \
+                 to face the camera, or use a smaller --window",
+                1000.0 * spread_m
+            ),
+            Self::TargetMoved { recording, frame, range_m } => write!(
+                f,
+                "{recording}: from frame {frame} on, the target moves by {:.0} mm within one position: let it \
+                 stand still",
+                1000.0 * range_m
+            ),
+            Self::TooFewDistances { integration_time_us, found } => {
+                write!(
+                    f,
+                    "distance sweep, {}: {found} positions; record 8 or more",
+                    time(*integration_time_us)
+                )
+            }
+            Self::NoOverlap { integration_time_us } => write!(
+                f,
+                "distance sweep, {}: left out, it neither reaches the reference distance nor overlaps the others",
+                time(*integration_time_us)
+            ),
+        }
+    }
+}
+
+fn time(integration_time_us: Option<f64>) -> String {
+    integration_time_us.map_or_else(|| "time unknown".to_owned(), |time| format!("{time} µs"))
+}
+
+/// A decay with fewer positions follows its noise.
+const ENOUGH_POSITIONS: usize = 8;
+
+pub(super) fn about_decays(decays: &[Decay], uses: &[DecayUse]) -> Vec<FitWarning> {
+    let mut warnings = Vec::new();
+    for (decay, used) in decays.iter().zip(uses) {
+        let integration_time_us = decay.integration_time_us;
+        if used.scaling == Scaling::LeftOut {
+            warnings.push(FitWarning::NoOverlap { integration_time_us });
+        } else if decay.points.len() < ENOUGH_POSITIONS {
+            warnings.push(FitWarning::TooFewDistances { integration_time_us, found: decay.points.len() });
+        }
+    }
+    warnings
+}

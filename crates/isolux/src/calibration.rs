@@ -1,0 +1,161 @@
+//! The calibration of one camera: fitted terms, the conditions they refer to, and where they come from.
+
+use serde::{Deserialize, Serialize};
+
+use crate::terms::{Cubic, Lut, ParameterError, require};
+
+/// Reference integration time of the paper (register 40 of the SR-3100), µs.
+pub const REFERENCE_TIME_US: f64 = 8200.0;
+/// Reference distance of the paper, m.
+pub const REFERENCE_DISTANCE_M: f64 = 0.75;
+
+/// Conditions under which every multiplier is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// Integration time, µs; absent for a camera that does not tell it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integration_time_us: Option<f64>,
+    /// Radial distance, m.
+    pub distance_m: f64,
+}
+
+impl Default for Reference {
+    fn default() -> Self {
+        Self { integration_time_us: Some(REFERENCE_TIME_US), distance_m: REFERENCE_DISTANCE_M }
+    }
+}
+
+/// The amplitude noise that is there without light, measured at the shortest integration time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseFloor {
+    /// Standard deviation of the amplitude, DN.
+    pub amplitude_sd_dn: f64,
+    /// Integration time at which it was measured, µs.
+    pub integration_time_us: f64,
+    /// Amplitudes below this are flagged LOW_SIGNAL, DN.
+    pub low_signal_below_dn: f64,
+}
+
+impl NoiseFloor {
+    /// Signal-to-noise ratio below which an amplitude is LOW_SIGNAL. An amplitude is Rician: its mean is too
+    /// high by `1 / (2 SNR²)`, 2 % at 5.
+    pub const LOW_SIGNAL_SNR: f64 = 5.0;
+
+    /// The floor for a measured standard deviation (DN) at an integration time (µs).
+    #[must_use]
+    pub fn new(amplitude_sd_dn: f64, integration_time_us: f64) -> Self {
+        Self {
+            amplitude_sd_dn,
+            integration_time_us,
+            low_signal_below_dn: Self::LOW_SIGNAL_SNR * amplitude_sd_dn,
+        }
+    }
+}
+
+/// The fitted terms, each with its own valid range, sources and residuals.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Terms {
+    /// Integration time, the paper's lookup table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lut: Option<Lut>,
+    /// Distance, the paper's cubic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cubic: Option<Cubic>,
+}
+
+/// A camera's calibration, as its file holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// Always [`Calibration::FORMAT`].
+    pub format: String,
+    /// Version of the file format, [`Calibration::VERSION`].
+    pub version: u32,
+    /// Camera, as the user or the recordings name it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<String>,
+    /// Program and version that wrote the file.
+    pub created_by: String,
+    /// Conditions under which every multiplier is 1.
+    pub reference: Reference,
+    /// What was fitted.
+    pub terms: Terms,
+    /// Noise of the amplitude without light, where an exposure sweep showed it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_floor: Option<NoiseFloor>,
+    /// What concerns more than one term.
+    pub warnings: Vec<String>,
+}
+
+impl Calibration {
+    /// Format name in every calibration file.
+    pub const FORMAT: &'static str = "isolux-calibration";
+    /// Newest format version that this library reads, and the one it writes.
+    pub const VERSION: u32 = 1;
+
+    /// A calibration without terms.
+    #[must_use]
+    pub fn new(camera: Option<String>, reference: Reference) -> Self {
+        Self {
+            format: Self::FORMAT.to_owned(),
+            version: Self::VERSION,
+            camera,
+            created_by: concat!("isolux ", env!("CARGO_PKG_VERSION")).to_owned(),
+            reference,
+            terms: Terms::default(),
+            noise_floor: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Refuses values that no fit can have written, so that whatever follows may rely on them.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the field.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        require(self.format == Self::FORMAT, "format", &self.format, Self::FORMAT)?;
+        require(self.version == Self::VERSION, "version", self.version, "1")?;
+        let Reference { integration_time_us, distance_m } = self.reference;
+        let time = integration_time_us.unwrap_or(REFERENCE_TIME_US);
+        require(positive(time), "reference.integration_time_us", time, "a positive time in µs")?;
+        require(positive(distance_m), "reference.distance_m", distance_m, "a positive distance in m")?;
+        if let Some(floor) = self.noise_floor {
+            let fine = positive(floor.low_signal_below_dn) && positive(floor.amplitude_sd_dn);
+            require(fine, "noise_floor", floor.low_signal_below_dn, "positive numbers")?;
+        }
+        let needs_time = self.terms.lut.is_some() && integration_time_us.is_none();
+        require(!needs_time, "reference.integration_time_us", "nothing", "the time at which the lut is 1")?;
+        self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
+        self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_names_its_format_and_refuses_unknown_fields() {
+        let calibration = Calibration::new(Some("SR-3100".into()), Reference::default());
+        assert!(calibration.check().is_ok());
+        let text = serde_json::to_string(&calibration).unwrap();
+        assert!(text.starts_with(r#"{"format":"isolux-calibration","version":1"#));
+        assert_eq!(serde_json::from_str::<Calibration>(&text).unwrap(), calibration);
+        let spoilt = text.replacen("\"version\"", "\"surprise\":1,\"version\"", 1);
+        let message = serde_json::from_str::<Calibration>(&spoilt).unwrap_err().to_string();
+        assert!(message.contains("surprise"), "{message}");
+    }
+
+    #[test]
+    fn impossible_references_are_refused() {
+        let mut calibration =
+            Calibration::new(None, Reference { integration_time_us: None, distance_m: -1.0 });
+        assert_eq!(calibration.check().unwrap_err().field, "reference.distance_m");
+        calibration.reference = Reference { integration_time_us: Some(f64::NAN), distance_m: 1.0 };
+        assert_eq!(calibration.check().unwrap_err().field, "reference.integration_time_us");
+    }
+}

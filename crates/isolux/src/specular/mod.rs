@@ -1,0 +1,87 @@
+//! Specular highlights (section 2.3 of the paper): find a cutoff, limit what lies above it, flag it.
+
+mod histogram;
+mod percent;
+mod sigma;
+
+pub use histogram::HistogramRule;
+pub use percent::PercentRule;
+pub use sigma::SigmaRule;
+
+use crate::flags::PixelFlags;
+use crate::plane::Plane;
+use crate::quantile::PositiveQuantiles;
+
+/// How the cutoff is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SpecularRule {
+    /// Highest intensity with enough occurrences (the paper's proposal).
+    Histogram(HistogramRule),
+    /// Mean plus a multiple of the standard deviation.
+    Sigma(SigmaRule),
+    /// Fraction of the maximum, or a quantile.
+    Percent(PercentRule),
+}
+
+impl SpecularRule {
+    /// Name on the command line and in recordings.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Histogram(_) => "histogram",
+            Self::Sigma(_) => "sigma",
+            Self::Percent(_) => "percent",
+        }
+    }
+
+    /// The rule's parameter in words, for the record of applied steps.
+    #[must_use]
+    pub fn parameters(&self) -> String {
+        match self {
+            Self::Histogram(rule) => rule.parameters(),
+            Self::Sigma(rule) => format!("{} standard deviations above the mean", rule.deviations),
+            Self::Percent(rule) => rule.parameters(),
+        }
+    }
+
+    /// The value above which pixels count as specular; `None` when the image has none that qualifies.
+    pub(crate) fn cutoff(&self, values: &[f32], memory: &mut SpecularMemory) -> Option<f32> {
+        match self {
+            Self::Histogram(rule) => rule.cutoff(values, memory),
+            Self::Sigma(rule) => rule.cutoff(values),
+            Self::Percent(rule) => rule.cutoff(values, &mut memory.quantiles),
+        }
+    }
+}
+
+/// Working memory of the rules, kept between images.
+#[derive(Clone, Debug)]
+pub(crate) struct SpecularMemory {
+    quantiles: PositiveQuantiles,
+    bins: [u32; histogram::BINS],
+}
+
+impl SpecularMemory {
+    pub(crate) fn new() -> Self {
+        Self { quantiles: PositiveQuantiles::new(), bins: [0; histogram::BINS] }
+    }
+}
+
+/// Sets values above `cutoff` to it and flags them; returns how many.
+pub(crate) fn limit(values: &mut Plane<f32>, flags: &mut Plane<PixelFlags>, cutoff: f32) -> usize {
+    let mut limited = 0;
+    for (value, flags) in values.values_mut().iter_mut().zip(flags.values_mut()) {
+        if *value > cutoff {
+            *value = cutoff;
+            flags.insert(PixelFlags::SPECULAR);
+            limited += 1;
+        }
+    }
+    limited
+}
+
+/// Largest positive finite value, or 0.
+fn maximum(values: &[f32]) -> f32 {
+    values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max)
+}

@@ -1,0 +1,69 @@
+//! The correction terms, one file each: model, fit and parameters together. A term has one name, in code, in
+//! the calibration file and on the command line.
+
+pub mod cubic;
+pub mod eq5;
+pub mod linear;
+pub mod lut;
+pub mod square;
+
+mod polynomial;
+
+pub use cubic::Cubic;
+pub use lut::Lut;
+pub use polynomial::DistanceGain;
+
+use serde::{Deserialize, Serialize};
+
+/// A recording that a term was fitted on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// Name of the recording, as the user gave it.
+    pub recording: String,
+    /// Frames that entered the fit.
+    pub frames_used: usize,
+    /// Frames left out: settling, excluded times, saturated windows.
+    pub frames_left_out: usize,
+}
+
+/// How well a term describes what it was fitted on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitQuality {
+    /// Points that the fit rests on: integration times of a LUT, positions of a decay.
+    pub points: usize,
+    /// Root mean square of the relative error that the term leaves on these points, dimensionless.
+    pub residual: f64,
+    /// The same on points that were kept out of the fit in turn; absent where too few points are there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_out_residual: Option<f64>,
+}
+
+/// A range check that a versioned parameter set failed when read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{field}: {found}; {expected} expected")]
+pub struct ParameterError {
+    /// Field of the calibration file.
+    pub field: &'static str,
+    /// What stands there.
+    pub found: String,
+    /// What should.
+    pub expected: &'static str,
+}
+
+/// Refuses `found` in `field` unless it is `fine`.
+pub(crate) fn require(
+    fine: bool,
+    field: &'static str,
+    found: impl std::fmt::Display,
+    expected: &'static str,
+) -> Result<(), ParameterError> {
+    if fine { Ok(()) } else { Err(ParameterError { field, found: found.to_string(), expected }) }
+}
+
+/// Root mean square of `values`; `None` when there are none.
+pub(crate) fn root_mean_square(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.into_iter().fold((0.0, 0u32), |(sum, count), v| (sum + v * v, count + 1));
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+}
