@@ -41,7 +41,7 @@ pub struct FitQuality {
 }
 
 /// A range check that a versioned parameter set failed when read.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {found}; {expected} expected")]
 pub struct ParameterError {
     /// Field of the calibration file.

@@ -1,0 +1,72 @@
+//! The point-wise chain beside a copy of the same bytes, and the whole chain with its highlights, at the size of
+//! an SR-3100 and at one megapixel. Run with `cargo bench -p isolux`; compare ratios, not seconds.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
+use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer};
+
+const SHAPES: [Shape; 2] = [Shape::new(144, 176), Shape::new(1000, 1000)];
+
+fn main() {
+    divan::main();
+}
+
+fn frame(shape: Shape, per_pixel: bool) -> Frame {
+    let mut frame = Frame::new(shape);
+    frame.amplitude = Plane::from_fn(shape, |row, column| 100.0 + ((row * 31 + column * 17) % 997) as f32);
+    frame.distance_m =
+        Some(Plane::from_fn(shape, |row, column| 0.5 + ((row * 13 + column * 7) % 401) as f32 / 100.0));
+    frame.integration_time_us = if per_pixel {
+        IntegrationTime::PerPixel(Plane::from_fn(shape, |row, column| {
+            [125.0, 5000.0][(row + column / 3) % 2]
+        }))
+    } else {
+        IntegrationTime::PerFrame(4000.0)
+    };
+    frame.flag_amplitude(Some(65535.0));
+    frame
+}
+
+fn standardize(bencher: Bencher, shape: Shape, per_pixel: bool, specular: Option<SpecularStep>) {
+    let choice = Choice {
+        time: Some(TimeStep::Linear),
+        distance: Some(DistanceStep::Eq5),
+        specular,
+        ..Choice::default()
+    };
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let standardizer =
+        Standardizer::plan(&choice, None, channels).expect("textbook steps need no calibration");
+    let (frame, mut out) = (frame(shape, per_pixel), Standardized::new(shape));
+    bencher
+        .counter(ItemsCount::new(shape.pixels()))
+        .bench_local(|| standardizer.apply(black_box(&frame), black_box(&mut out)).expect("frame fits"));
+}
+
+/// Reads amplitude, distance and flags, writes amplitude and flags, as the chain must.
+#[divan::bench(args = SHAPES)]
+fn memcpy(bencher: Bencher, shape: Shape) {
+    let input = vec![1u8; shape.pixels() * 6];
+    let (mut output, distance) = (vec![0u8; shape.pixels() * 6], vec![1f32; shape.pixels()]);
+    let mut sink = vec![0f32; shape.pixels()];
+    bencher.counter(ItemsCount::new(shape.pixels())).bench_local(|| {
+        black_box(&mut output).copy_from_slice(black_box(&input));
+        black_box(&mut sink).copy_from_slice(black_box(&distance));
+    });
+}
+
+#[divan::bench(args = SHAPES)]
+fn pointwise(bencher: Bencher, shape: Shape) {
+    standardize(bencher, shape, false, Some(SpecularStep::None));
+}
+
+#[divan::bench(args = SHAPES)]
+fn pointwise_time_per_pixel(bencher: Bencher, shape: Shape) {
+    standardize(bencher, shape, true, Some(SpecularStep::None));
+}
+
+#[divan::bench(args = SHAPES)]
+fn with_histogram(bencher: Bencher, shape: Shape) {
+    standardize(bencher, shape, false, None);
+}

@@ -1,0 +1,63 @@
+//! What the user asks for: a method, and single steps that override it.
+
+use crate::specular::SpecularRule;
+
+/// Which terms to use where no single step says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The paper's chain: lut, cubic, histogram. All must be in the calibration.
+    Paper,
+    /// The best terms that the calibration holds; without a calibration, textbook physics.
+    #[default]
+    Best,
+}
+
+/// The step that takes the integration time out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TimeStep {
+    /// The calibration's table.
+    Lut,
+    /// `t_ref / t`.
+    Linear,
+    /// Leave it in.
+    None,
+}
+
+/// The step that takes the distance out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DistanceStep {
+    /// The calibration's cubic.
+    Cubic,
+    /// `(d / d_ref)²`.
+    Square,
+    /// Eq. 5 of the paper.
+    Eq5,
+    /// Leave it in.
+    None,
+}
+
+/// The step that limits highlights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpecularStep {
+    /// Limit by this rule.
+    Limit(SpecularRule),
+    /// Leave them.
+    None,
+}
+
+/// A method, and the steps that override it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// Where no single step is given.
+    pub method: Method,
+    /// Integration time.
+    pub time: Option<TimeStep>,
+    /// Distance.
+    pub distance: Option<DistanceStep>,
+    /// Highlights.
+    pub specular: Option<SpecularStep>,
+    /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
+    pub low_signal_below_dn: Option<f32>,
+}

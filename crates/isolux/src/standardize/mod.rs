@@ -1,0 +1,193 @@
+//! Standardizing frames: plan once, then apply to each frame without allocating.
+
+mod choice;
+mod kernel;
+mod plan;
+mod time;
+
+pub use choice::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+pub use plan::{AppliedStep, Note, PlanError};
+
+use crate::calibration::Calibration;
+use crate::flags::PixelFlags;
+use crate::frame::{Channels, Frame};
+use crate::plane::{Plane, Shape, ShapeError};
+use crate::specular::{self, SpecularMemory};
+use crate::terms::DistanceGain;
+use kernel::{BLOCK, Block};
+use plan::Plan;
+use time::TimeGain;
+
+/// A chain of corrections, ready to apply to any frame of a recording. Shareable between threads.
+#[derive(Clone, Debug)]
+pub struct Standardizer {
+    plan: Plan,
+}
+
+/// A standardized frame and the working memory to make it; reuse one for a whole recording.
+#[derive(Clone, Debug)]
+pub struct Standardized {
+    /// Amplitude expected at the reference time and distance, DN; NaN exactly where INVALID is flagged.
+    pub amplitude: Plane<f32>,
+    /// The frame's flags, with those of the correction.
+    pub flags: Plane<PixelFlags>,
+    specular: SpecularMemory,
+}
+
+/// What happened to one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameSummary {
+    /// Pixels with a value.
+    pub valid: usize,
+    /// All pixels.
+    pub pixels: usize,
+    /// Pixels whose integration time is above the table's range, or unknown: refused.
+    pub time_refused: usize,
+    /// Pixels whose integration time is below the table: continued as 1/t and flagged.
+    pub time_extrapolated: usize,
+    /// Pixels whose distance is outside the fitted range: continued as d² and flagged.
+    pub distance_extrapolated: usize,
+    /// Pixels limited as specular.
+    pub specular: usize,
+    /// The value they were limited to, DN; `None` when the rule found no cutoff or there is no such step.
+    pub specular_cutoff: Option<f32>,
+}
+
+/// Why a frame cannot be standardized.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StandardizeError {
+    /// Planes that do not fit together.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The integration time that the plan needs is not there.
+    #[error(
+        "integration time found unknown (NaN or missing), a positive number of µs expected: the time step needs \
+         it; use `--time none` to leave it out"
+    )]
+    TimeUnknown,
+    /// The distance that the plan needs is not there.
+    #[error("distance found missing, a plane of metres expected: the distance step needs it")]
+    DistanceMissing,
+}
+
+impl Standardized {
+    /// Memory for frames of `shape`.
+    #[must_use]
+    pub fn new(shape: Shape) -> Self {
+        Self {
+            amplitude: Plane::filled(shape, f32::NAN),
+            flags: Plane::filled(shape, PixelFlags::empty()),
+            specular: SpecularMemory::new(),
+        }
+    }
+
+    /// Follows a frame of another shape; does not allocate when the shape is unchanged.
+    fn reshape(&mut self, shape: Shape) {
+        self.amplitude.reshape(shape, f32::NAN);
+        self.flags.reshape(shape, PixelFlags::empty());
+    }
+}
+
+impl Standardizer {
+    /// Plans the chain: the choice's steps, with the terms of `calibration`, for recordings that have the
+    /// `available` channels.
+    ///
+    /// # Errors
+    /// [`PlanError`] when something asked for by name cannot be done.
+    pub fn plan(
+        choice: &Choice,
+        calibration: Option<&Calibration>,
+        available: Channels,
+    ) -> Result<Self, PlanError> {
+        Ok(Self { plan: Plan::new(choice, calibration, available)? })
+    }
+
+    /// The steps, in the order in which they are applied.
+    #[must_use]
+    pub fn steps(&self) -> &[AppliedStep] {
+        &self.plan.steps
+    }
+
+    /// What the user should know of the plan.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.plan.notes
+    }
+
+    /// Channels that the chain reads.
+    #[must_use]
+    pub fn needed(&self) -> Channels {
+        let mut needed = Channels::AMPLITUDE;
+        needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
+        needed.set(Channels::DISTANCE, self.plan.distance.is_some());
+        needed
+    }
+
+    /// Standardizes one frame into `out`; the frame itself stays as it is. Allocates only when the shape differs
+    /// from that of the last frame.
+    ///
+    /// # Errors
+    /// [`StandardizeError`] when the frame lacks what the plan needs, or its planes differ in shape.
+    pub fn apply(&self, frame: &Frame, out: &mut Standardized) -> Result<FrameSummary, StandardizeError> {
+        frame.check_shapes()?;
+        out.reshape(frame.shape());
+        out.flags.values_mut().copy_from_slice(frame.flags.values());
+        let time_gain =
+            time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
+        self.scale(frame, time_gain, out)?;
+        let specular_cutoff =
+            self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.specular));
+        if let Some(cutoff) = specular_cutoff {
+            specular::limit(&mut out.amplitude, &mut out.flags, cutoff);
+        }
+        Ok(FrameSummary { specular_cutoff, ..count(out) })
+    }
+
+    /// Runs the point-wise loop block by block. A step that is left out reads a block of ones from the cache.
+    fn scale(&self, frame: &Frame, gain: TimeGain, out: &mut Standardized) -> Result<(), StandardizeError> {
+        const ONES: [f32; BLOCK] = [1.0; BLOCK];
+        let law = self.plan.distance.unwrap_or(DistanceGain::ONE);
+        let distances = match (&self.plan.distance, &frame.distance_m) {
+            (None, _) => None,
+            (Some(_), Some(distances)) => Some(distances.values()),
+            (Some(_), None) => return Err(StandardizeError::DistanceMissing),
+        };
+        let mut gains = [1.0; BLOCK];
+        if let TimeGain::Uniform(gain) = gain {
+            gains.fill(gain);
+        }
+        let blocks = frame.amplitude.values().chunks(BLOCK).enumerate();
+        let outputs =
+            out.amplitude.values_mut().chunks_mut(BLOCK).zip(out.flags.values_mut().chunks_mut(BLOCK));
+        for ((index, amplitude), (values, flags)) in blocks.zip(outputs) {
+            let (start, count) = (index * BLOCK, amplitude.len());
+            if matches!(gain, TimeGain::PerPixel) {
+                gains[..count].copy_from_slice(values);
+            }
+            let block = Block {
+                amplitude,
+                distance_m: distances.map_or(&ONES[..count], |distances| &distances[start..start + count]),
+                time_gain: &gains[..count],
+            };
+            kernel::pointwise(block, &law, self.plan.low_signal_below_dn, values, flags);
+        }
+        Ok(())
+    }
+}
+
+fn count(out: &Standardized) -> FrameSummary {
+    let flags = out.flags.values();
+    let mut tally = [0; kernel::TALLIES.len()];
+    flags.chunks(BLOCK).for_each(|block| kernel::tally(block, &mut tally));
+    let [invalid, time_refused, time_extrapolated, distance_extrapolated, specular] = tally;
+    FrameSummary {
+        valid: flags.len() - invalid,
+        pixels: flags.len(),
+        time_refused,
+        time_extrapolated,
+        distance_extrapolated,
+        specular,
+        specular_cutoff: None,
+    }
+}

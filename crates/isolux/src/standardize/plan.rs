@@ -1,0 +1,344 @@
+//! From the user's choice, the calibration and the channels at hand to the steps that will be applied.
+
+use std::fmt;
+
+use super::choice::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+use crate::calibration::{Calibration, REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
+use crate::frame::Channels;
+use crate::specular::{HistogramRule, SpecularRule};
+use crate::terms::{DistanceGain, Lut, eq5, square};
+
+/// The integration-time step, ready to apply.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum TimePlan {
+    Lut(Lut),
+    Linear { reference_us: f64 },
+    None,
+}
+
+/// Everything that depends on the calibration alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Plan {
+    pub(super) time: TimePlan,
+    /// `None` leaves the distance in.
+    pub(super) distance: Option<DistanceGain>,
+    pub(super) specular: Option<SpecularRule>,
+    pub(super) low_signal_below_dn: f32,
+    pub(super) steps: Vec<AppliedStep>,
+    pub(super) notes: Vec<Note>,
+}
+
+/// One step of the chain, as the output's record tells it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AppliedStep {
+    /// Which effect it takes out: `time`, `distance` or `specular`.
+    pub effect: &'static str,
+    /// Name of the term.
+    pub term: &'static str,
+    /// Its parameters, in words.
+    pub parameters: String,
+}
+
+/// Something that the user should know of the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Note {
+    /// No calibration: textbook physics, not this camera.
+    Textbook,
+    /// `best` goes without a term that the calibration lacks.
+    TermMissing {
+        /// The term.
+        term: &'static str,
+        /// What can be done about it.
+        instead: &'static str,
+    },
+    /// A step is left out because the recording lacks its channel.
+    ChannelMissing {
+        /// The effect that stays in.
+        effect: &'static str,
+        /// The channel.
+        channel: &'static str,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Textbook => f.write_str(
+                "no calibration given: the steps are textbook physics (t_ref/t, d²), not this camera. `isolux \
+                 calibrate` measures its saturation and its own distance law",
+            ),
+            Self::TermMissing { term, instead } => {
+                write!(f, "the calibration has no `{term}`: this step is left out. {instead}")
+            }
+            Self::ChannelMissing { effect, channel } => {
+                write!(f, "the recording has no {channel}: the {effect} step is left out")
+            }
+        }
+    }
+}
+
+/// Why a choice cannot be carried out.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// A term asked for by name is not there.
+    #[error(
+        "`{term}` was asked for, but {holder}: fit it with `isolux calibrate {fit_with} REC`, or choose another step"
+    )]
+    TermMissing {
+        /// The term.
+        term: &'static str,
+        /// Who lacks it.
+        holder: &'static str,
+        /// Option of `isolux calibrate` that fits it.
+        fit_with: &'static str,
+    },
+    /// A step asked for by name needs a channel that the recording lacks.
+    #[error("`{term}` was asked for, but the recording has no {channel}")]
+    ChannelMissing {
+        /// The term.
+        term: &'static str,
+        /// The channel.
+        channel: &'static str,
+    },
+    /// The calibration's own values are impossible.
+    #[error("calibration: {0}")]
+    Calibration(#[from] crate::terms::ParameterError),
+}
+
+impl Plan {
+    /// Decides each step.
+    ///
+    /// # Errors
+    /// [`PlanError`] when something asked for by name cannot be done.
+    pub(super) fn new(
+        choice: &Choice,
+        calibration: Option<&Calibration>,
+        available: Channels,
+    ) -> Result<Self, PlanError> {
+        if let Some(calibration) = calibration {
+            calibration.check()?;
+        }
+        let mut planner = Planner { choice, calibration, available, steps: Vec::new(), notes: Vec::new() };
+        if calibration.is_none() && choice.method == Method::Best {
+            let textbook = |named: bool| !named;
+            if textbook(choice.time.is_some()) || textbook(choice.distance.is_some()) {
+                planner.notes.push(Note::Textbook);
+            }
+        }
+        let time = planner.time()?;
+        let distance = planner.distance()?;
+        let specular = planner.specular();
+        let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
+        Ok(Self {
+            time,
+            distance,
+            specular,
+            low_signal_below_dn: choice.low_signal_below_dn.or(floor).unwrap_or(0.0),
+            steps: planner.steps,
+            notes: planner.notes,
+        })
+    }
+}
+
+struct Planner<'a> {
+    choice: &'a Choice,
+    calibration: Option<&'a Calibration>,
+    available: Channels,
+    steps: Vec<AppliedStep>,
+    notes: Vec<Note>,
+}
+
+impl Planner<'_> {
+    fn time(&mut self) -> Result<TimePlan, PlanError> {
+        let named = self.choice.time;
+        let wanted = named.unwrap_or_else(|| self.default_time());
+        let term = match wanted {
+            TimeStep::Lut => "lut",
+            TimeStep::Linear => "linear",
+            TimeStep::None => return Ok(TimePlan::None),
+        };
+        if !self.has(
+            Channels::INTEGRATION_TIME,
+            "time",
+            term,
+            "integration time",
+            self.is_required(named.is_some()),
+        )? {
+            return Ok(TimePlan::None);
+        }
+        let reference_us =
+            self.calibration.and_then(|c| c.reference.integration_time_us).unwrap_or(REFERENCE_TIME_US);
+        if wanted == TimeStep::Linear {
+            self.step("time", term, format!("{reference_us} µs / t"));
+            return Ok(TimePlan::Linear { reference_us });
+        }
+        let lut = self.calibration.and_then(|c| c.terms.lut.clone());
+        let lut = lut.ok_or_else(|| self.missing(term, "--exposure-sweep"))?;
+        let [min_us, max_us] = lut.valid_integration_time_us;
+        self.step("time", term, format!("1 at {reference_us} µs, valid from {min_us} to {max_us} µs"));
+        Ok(TimePlan::Lut(lut))
+    }
+
+    fn distance(&mut self) -> Result<Option<DistanceGain>, PlanError> {
+        let named = self.choice.distance;
+        let wanted = named.unwrap_or_else(|| self.default_distance());
+        let term = match wanted {
+            DistanceStep::Cubic => "cubic",
+            DistanceStep::Square => "square",
+            DistanceStep::Eq5 => "eq5",
+            DistanceStep::None => return Ok(None),
+        };
+        if !self.has(Channels::DISTANCE, "distance", term, "distance", self.is_required(named.is_some()))? {
+            return Ok(None);
+        }
+        let reference_m = self.calibration.map_or(REFERENCE_DISTANCE_M, |c| c.reference.distance_m);
+        let (gain, parameters) = match wanted {
+            DistanceStep::Square => (square::gain(reference_m), format!("(d / {reference_m} m)²")),
+            DistanceStep::Eq5 => {
+                (eq5::gain(reference_m), format!("((2d)² + 1) / ((2·{reference_m})² + 1), d in m"))
+            }
+            DistanceStep::Cubic | DistanceStep::None => {
+                let cubic = self.calibration.and_then(|c| c.terms.cubic.as_ref());
+                let cubic = cubic.ok_or_else(|| self.missing(term, "--distance-sweep"))?;
+                let [min_m, max_m] = cubic.valid_distance_m;
+                let parameters = format!(
+                    "1 at {reference_m} m, valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)"
+                );
+                (cubic.gain(), parameters)
+            }
+        };
+        self.step("distance", term, parameters);
+        Ok(Some(gain))
+    }
+
+    fn specular(&mut self) -> Option<SpecularRule> {
+        let default = SpecularStep::Limit(SpecularRule::Histogram(HistogramRule::default()));
+        let SpecularStep::Limit(rule) = self.choice.specular.unwrap_or(default) else { return None };
+        self.step("specular", rule.name(), rule.parameters());
+        Some(rule)
+    }
+
+    /// The time step of the method; notes what `best` goes without.
+    fn default_time(&mut self) -> TimeStep {
+        match (self.choice.method, self.calibration) {
+            (Method::Paper, _) => TimeStep::Lut,
+            (Method::Best, None) => TimeStep::Linear,
+            (Method::Best, Some(calibration)) if calibration.terms.lut.is_some() => TimeStep::Lut,
+            (Method::Best, Some(_)) => {
+                if self.available.contains(Channels::INTEGRATION_TIME) {
+                    let instead = "`--time linear` uses t_ref/t.";
+                    self.notes.push(Note::TermMissing { term: "lut", instead });
+                }
+                TimeStep::None
+            }
+        }
+    }
+
+    /// The distance step of the method; notes what `best` goes without.
+    fn default_distance(&mut self) -> DistanceStep {
+        match (self.choice.method, self.calibration) {
+            (Method::Paper, _) => DistanceStep::Cubic,
+            (Method::Best, None) => DistanceStep::Square,
+            (Method::Best, Some(calibration)) if calibration.terms.cubic.is_some() => DistanceStep::Cubic,
+            (Method::Best, Some(_)) => {
+                if self.available.contains(Channels::DISTANCE) {
+                    let instead = "`--distance square` uses d².";
+                    self.notes.push(Note::TermMissing { term: "cubic", instead });
+                }
+                DistanceStep::None
+            }
+        }
+    }
+
+    /// A step is required when it, or the method that consists of it, was asked for by name.
+    fn is_required(&self, named: bool) -> bool {
+        named || self.choice.method == Method::Paper
+    }
+
+    fn has(
+        &mut self,
+        needed: Channels,
+        effect: &'static str,
+        term: &'static str,
+        channel: &'static str,
+        required: bool,
+    ) -> Result<bool, PlanError> {
+        if self.available.contains(needed) {
+            return Ok(true);
+        }
+        if required {
+            return Err(PlanError::ChannelMissing { term, channel });
+        }
+        self.notes.push(Note::ChannelMissing { effect, channel });
+        Ok(false)
+    }
+
+    fn missing(&self, term: &'static str, fit_with: &'static str) -> PlanError {
+        let holder = if self.calibration.is_some() {
+            "the calibration does not hold it"
+        } else {
+            "no calibration is given"
+        };
+        PlanError::TermMissing { term, holder, fit_with }
+    }
+
+    fn step(&mut self, effect: &'static str, term: &'static str, parameters: String) {
+        self.steps.push(AppliedStep { effect, term, parameters });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Reference;
+
+    const BOTH: Channels = Channels::INTEGRATION_TIME.union(Channels::DISTANCE).union(Channels::AMPLITUDE);
+
+    fn terms(plan: &Plan) -> Vec<&str> {
+        plan.steps.iter().map(|step| step.term).collect()
+    }
+
+    #[test]
+    fn without_a_calibration_the_steps_are_textbook_and_say_so() {
+        let plan = Plan::new(&Choice::default(), None, BOTH).unwrap();
+        assert_eq!(terms(&plan), ["linear", "square", "histogram"]);
+        assert_eq!(plan.notes, [Note::Textbook]);
+    }
+
+    #[test]
+    fn channels_that_are_not_there_are_skipped_with_a_note_or_refused_by_name() {
+        let plan = Plan::new(&Choice::default(), None, Channels::AMPLITUDE).unwrap();
+        assert_eq!(terms(&plan), ["histogram"]);
+        assert_eq!(plan.notes.len(), 3);
+        let named = Choice { distance: Some(DistanceStep::Eq5), ..Choice::default() };
+        let error = Plan::new(&named, None, Channels::AMPLITUDE).unwrap_err();
+        assert_eq!(error, PlanError::ChannelMissing { term: "eq5", channel: "distance" });
+    }
+
+    #[test]
+    fn terms_that_the_calibration_lacks_are_notes_for_best_and_errors_by_name() {
+        let empty = Calibration::new(None, Reference::default());
+        let plan = Plan::new(&Choice::default(), Some(&empty), BOTH).unwrap();
+        assert_eq!(terms(&plan), ["histogram"]);
+        assert!(matches!(
+            plan.notes[..],
+            [Note::TermMissing { term: "lut", .. }, Note::TermMissing { term: "cubic", .. }]
+        ));
+        for choice in [
+            Choice { method: Method::Paper, ..Choice::default() },
+            Choice { time: Some(TimeStep::Lut), ..Choice::default() },
+        ] {
+            let error = Plan::new(&choice, Some(&empty), BOTH).unwrap_err();
+            assert!(matches!(error, PlanError::TermMissing { term: "lut", .. }));
+        }
+    }
+
+    #[test]
+    fn a_spoilt_calibration_is_refused() {
+        let mut calibration = Calibration::new(None, Reference::default());
+        calibration.reference.distance_m = f64::NAN;
+        assert!(Plan::new(&Choice::default(), Some(&calibration), BOTH).is_err());
+    }
+}
