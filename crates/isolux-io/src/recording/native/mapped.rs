@@ -1,0 +1,61 @@
+//! Frames of an uncompressed array, through windows of memory mapped onto the file.
+
+use std::fs::File;
+use std::path::Path;
+
+use memmap2::{Mmap, MmapOptions};
+
+use crate::error::RecordingError;
+
+/// Touched pages of a mapping count as the process's memory, so the window stays small however long the file is;
+/// 8 MiB makes the cost of mapping negligible beside that of reading.
+const WINDOW_BYTES: usize = 8 << 20;
+
+/// Frames that lie one behind the other in a file.
+#[derive(Debug)]
+pub(crate) struct MappedFrames {
+    file: File,
+    /// Byte of the first frame.
+    start: u64,
+    frame_bytes: usize,
+    frame_count: usize,
+    window: Option<(usize, Mmap)>,
+}
+
+impl MappedFrames {
+    pub(crate) fn new(file: File, start: u64, frame_bytes: usize, frame_count: usize) -> Self {
+        Self { file, start, frame_bytes, frame_count, window: None }
+    }
+
+    /// The bytes of frame `index`, which must be below the frame count.
+    pub(crate) fn frame(&mut self, index: usize, path: &Path) -> Result<&[u8], RecordingError> {
+        let frames_per_window = (WINDOW_BYTES / self.frame_bytes).max(1);
+        let first = index - index % frames_per_window;
+        let current = self.window.take_if(|window| window.0 != first);
+        drop(current);
+        let window = match self.window.take() {
+            Some((_, window)) => window,
+            None => self.map(first, frames_per_window.min(self.frame_count - first), path)?,
+        };
+        let (_, window) = self.window.insert((first, window));
+        let begin = (index - first) * self.frame_bytes;
+        Ok(&window[begin..begin + self.frame_bytes])
+    }
+
+    fn map(&self, first: usize, frames: usize, path: &Path) -> Result<Mmap, RecordingError> {
+        let length = frames * self.frame_bytes;
+        let offset = self.start + first as u64 * self.frame_bytes as u64;
+        let found = self.file.metadata().map_err(RecordingError::io("look at", path))?.len();
+        let expected = offset + length as u64;
+        if found < expected {
+            let found = format!("{found} bytes, fewer than when it was opened");
+            return Err(RecordingError::content(path, found, format!("at least {expected}")));
+        }
+        // SAFETY: the mapping is read-only and private to this process's reading. The remaining hazard is another
+        // process that shortens or rewrites the file while the window is mapped: then the bytes may change under
+        // the borrow, or the access may end the process with SIGBUS. No format can rule that out; the size was
+        // checked just now, windows live shortly, and our own writer never changes a finished file in place.
+        unsafe { MmapOptions::new().offset(offset).len(length).map(&self.file) }
+            .map_err(RecordingError::io("map", path))
+    }
+}
