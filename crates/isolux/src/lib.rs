@@ -1,6 +1,7 @@
 //! Standardizes the amplitude images of time-of-flight cameras.
 pub mod calibrate;
 pub mod calibration;
+pub mod evaluate;
 pub mod flags;
 pub mod frame;
 pub mod geometry;

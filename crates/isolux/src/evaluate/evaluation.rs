@@ -1,0 +1,45 @@
+//! The figures of one recording.
+
+use serde::Serialize;
+
+use super::{
+    DistanceSlope, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv, SnrStratum, ThresholdIou,
+    outcome,
+};
+
+/// What an [`Evaluator`](super::Evaluator) found; each figure, or why the recording does not determine it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Frames evaluated.
+    pub frames: u64,
+    /// Height × width.
+    pub pixels_per_frame: usize,
+    /// Valid values / values of all frames, 0..=1; none without frames.
+    pub valid_fraction: Option<f64>,
+    /// Integration time of the reference frame, µs.
+    pub reference_time_us: Option<f64>,
+    /// Per-pixel coefficient of variation over integration times.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub pixel_cv: Outcome<PixelCv>,
+    /// The same, by the raw amplitude's signal-to-noise ratio.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub pixel_cv_by_snr: Outcome<Vec<SnrStratum>>,
+    /// Coefficient of variation of the image's mean over integration times.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub image_cv: Outcome<ImageCv>,
+    /// Slope of ln A on ln d.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub distance_slope: Outcome<DistanceSlope>,
+    /// Overlap of the masks of one threshold over integration times.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub threshold_iou: Outcome<ThresholdIou>,
+    /// Movement of Otsu's threshold over integration times.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub otsu_shift: Outcome<OtsuShift>,
+    /// W1 distance of log histograms over integration times.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub histogram_distance: Outcome<HistogramDistance>,
+    /// Relative noise of a single frame.
+    #[serde(serialize_with = "outcome::serialize")]
+    pub noise: Outcome<Noise>,
+}

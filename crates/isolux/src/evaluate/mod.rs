@@ -1,0 +1,220 @@
+//! How good a standardization is: figures for a recording before and after, with the share of pixels behind each.
+//!
+//! The evaluation streams: an [`Evaluator`] keeps a fixed number of planes (about 100 bytes a pixel), whatever
+//! the number of frames. It takes two passes over a recording:
+//!
+//! 1. read the integration times alone and let [`nearest_reference`] pick the reference frame;
+//! 2. give that frame to [`Evaluator::set_reference`], then every frame to [`Evaluator::push`], the raw
+//!    amplitude to one evaluator and the standardized amplitude to another, and both to [`Comparison::new`].
+//!
+//! Masking improves most figures: a method that drops the difficult pixels looks better. So each figure has its
+//! valid fraction, the share of the values of all its frames that entered. To compare on the same pixels, give
+//! the raw evaluator the flags of the standardized frame.
+//!
+//! The figures over integration times assume a still scene: they call every change with exposure a defect. A
+//! figure that the recording does not determine is not 0 but [`Unavailable`], which says why.
+//!
+//! ```
+//! use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
+//! use isolux::{Frame, IntegrationTime, Plane, Shape};
+//!
+//! let shape = Shape::new(4, 4);
+//! let times_us = [2000.0, 4000.0, 8000.0];
+//! let frames = times_us.map(|time_us| {
+//!     let mut frame = Frame::new(shape);
+//!     let exposure = time_us as f32 / 100.0;
+//!     frame.amplitude = Plane::from_fn(shape, |row, column| exposure * (1 + row + column) as f32);
+//!     frame.integration_time_us = IntegrationTime::PerFrame(time_us);
+//!     frame
+//! });
+//! let standardized = Plane::from_fn(shape, |row, column| (1 + row + column) as f32);
+//!
+//! let mut before = Evaluator::new(shape, EvaluationSettings::default());
+//! let mut after = Evaluator::new(shape, EvaluationSettings::default());
+//! if let Some(index) = nearest_reference(times_us.map(Some), 4100.0) {
+//!     let frame = &frames[index];
+//!     before.set_reference(&EvaluationFrame::of_raw(frame))?;
+//!     after.set_reference(&EvaluationFrame::of_standardized(frame, &standardized, &frame.flags))?;
+//! }
+//! for frame in &frames {
+//!     before.push(&EvaluationFrame::of_raw(frame))?;
+//!     after.push(&EvaluationFrame::of_standardized(frame, &standardized, &frame.flags))?;
+//! }
+//! let comparison = Comparison::new(&before, &after);
+//! assert!(comparison.before.pixel_cv.is_ok_and(|cv| cv.median > 0.5));
+//! assert!(comparison.after.pixel_cv.is_ok_and(|cv| cv.median < 1e-6));
+//! # Ok::<(), isolux::ShapeError>(())
+//! ```
+
+use crate::plane::{Plane, Shape, ShapeError};
+
+mod comparison;
+mod evaluation;
+mod histogram;
+mod image_cv;
+mod input;
+mod noise;
+mod otsu;
+mod outcome;
+mod pixel_cv;
+mod reference;
+mod runs;
+mod settings;
+mod slope;
+mod tally;
+#[cfg(test)]
+mod tests;
+mod threshold;
+
+pub use comparison::{Better, Comparison, ComparisonRow};
+pub use evaluation::Evaluation;
+pub use histogram::HistogramDistance;
+pub use image_cv::ImageCv;
+pub use input::{EvaluationFrame, nearest_reference};
+pub use noise::{Noise, NoiseMethod};
+pub use otsu::OtsuShift;
+pub use outcome::{Outcome, Unavailable};
+pub use pixel_cv::{PixelCv, SnrStratum};
+pub use settings::EvaluationSettings;
+pub use slope::DistanceSlope;
+pub use threshold::ThresholdIou;
+
+use input::Times;
+use noise::NoiseMeter;
+use pixel_cv::PixelRuns;
+use reference::ReferenceComparison;
+use runs::TimesSeen;
+use slope::SlopeSample;
+
+/// Takes frames one by one and comes to an [`Evaluation`]. Memory does not grow with the number of frames.
+#[derive(Clone, Debug)]
+pub struct Evaluator {
+    shape: Shape,
+    settings: EvaluationSettings,
+    usable: Vec<f32>,
+    frames: u64,
+    valid_values: u64,
+    times: TimesSeen,
+    pixel_runs: PixelRuns,
+    noise: NoiseMeter,
+    slope: SlopeSample,
+    reference: Option<ReferenceComparison>,
+}
+
+impl Evaluator {
+    /// An evaluator of frames of `shape`.
+    #[must_use]
+    pub fn new(shape: Shape, settings: EvaluationSettings) -> Self {
+        let pixels = shape.pixels();
+        Self {
+            shape,
+            usable: vec![f32::NAN; pixels],
+            frames: 0,
+            valid_values: 0,
+            times: TimesSeen::new(),
+            pixel_runs: PixelRuns::new(pixels, settings.same_time_ratio),
+            noise: NoiseMeter::new(shape, settings.same_time_ratio),
+            slope: SlopeSample::new(settings.sample_capacity()),
+            reference: None,
+            settings,
+        }
+    }
+
+    /// Gives the frame of the reference exposure, to be called before the first [`Self::push`]: frames pushed
+    /// earlier are not compared with it. It is pushed with the others in its turn too. A frame without one known
+    /// integration time is no reference; the figures that need one then say so.
+    ///
+    /// # Errors
+    /// [`ShapeError::Mismatch`] when a plane is not of the evaluator's shape.
+    pub fn set_reference(&mut self, frame: &EvaluationFrame<'_>) -> Result<(), ShapeError> {
+        frame.check_shapes(self.shape)?;
+        frame.usable_into(&mut self.usable);
+        let time_us = Times::of(frame.integration_time_us).of_frame();
+        self.reference = time_us.map(|time_us| ReferenceComparison::new(&self.usable, time_us));
+        Ok(())
+    }
+
+    /// Takes in the next frame of the recording, in its order.
+    ///
+    /// # Errors
+    /// [`ShapeError::Mismatch`] when a plane is not of the evaluator's shape; the frame then does not count.
+    pub fn push(&mut self, frame: &EvaluationFrame<'_>) -> Result<(), ShapeError> {
+        frame.check_shapes(self.shape)?;
+        self.valid_values += frame.usable_into(&mut self.usable) as u64;
+        self.frames += 1;
+        let times = Times::of(frame.integration_time_us);
+        self.times.push(&self.usable, times);
+        self.pixel_runs.push(&self.usable, times);
+        self.noise.push(&self.usable, times);
+        self.slope.push(&self.usable, frame, times);
+        if let (Some(reference), Some(time_us)) = (&mut self.reference, times.of_frame()) {
+            reference.push(&self.usable, time_us, self.settings.same_time_ratio);
+        }
+        Ok(())
+    }
+
+    /// The figures of all frames pushed. The strata are those of the evaluator's own signal-to-noise ratio.
+    #[must_use]
+    pub fn finish(&self) -> Evaluation {
+        self.finish_stratified(&self.signal_to_noise())
+    }
+
+    /// Signal-to-noise ratio of each pixel in a single frame: mean over integration times / pooled σ between
+    /// consecutive frames of one time (at least four pairs); infinite where σ is 0, NaN where it is unknown.
+    ///
+    /// # Errors
+    /// [`Unavailable::NoRepeatedFrames`] when it is known nowhere.
+    pub fn signal_to_noise(&self) -> Outcome<Plane<f32>> {
+        self.noise.signal_to_noise(self.pixel_runs.means())
+    }
+
+    fn finish_stratified(&self, snr: &Outcome<Plane<f32>>) -> Evaluation {
+        let pixel_cv = self.pixel_cv();
+        let strata = |snr: &Plane<f32>| self.pixel_runs.strata(snr, &self.settings.snr_edges);
+        let compared = self.compared();
+        Evaluation {
+            frames: self.frames,
+            pixels_per_frame: self.shape.pixels(),
+            valid_fraction: self.require_frames().ok().map(|()| fraction(self.valid_values, self.values())),
+            reference_time_us: self.reference.as_ref().map(|reference| f64::from(reference.time_us())),
+            pixel_cv,
+            pixel_cv_by_snr: pixel_cv.and_then(|_| snr.as_ref().map(strata).map_err(|reason| *reason)),
+            image_cv: compared.and_then(ReferenceComparison::image_cv),
+            distance_slope: self.require_valid().and_then(|()| self.slope.finish(&self.settings)),
+            threshold_iou: compared.and_then(ReferenceComparison::threshold_iou),
+            otsu_shift: compared.and_then(ReferenceComparison::otsu_shift),
+            histogram_distance: compared.and_then(ReferenceComparison::histogram_distance),
+            noise: self.require_valid().and_then(|()| self.noise.finish()),
+        }
+    }
+
+    fn pixel_cv(&self) -> Outcome<PixelCv> {
+        self.require_valid()?;
+        self.times.require_variation(self.settings.same_time_ratio)?;
+        self.pixel_runs.finish(self.frames)
+    }
+
+    fn compared(&self) -> Outcome<&ReferenceComparison> {
+        self.require_valid()?;
+        self.times.require_variation_of_frames(self.settings.same_time_ratio)?;
+        self.reference.as_ref().ok_or(Unavailable::NoReference)
+    }
+
+    fn require_frames(&self) -> Outcome<()> {
+        if self.values() > 0 { Ok(()) } else { Err(Unavailable::NoFrames) }
+    }
+
+    fn require_valid(&self) -> Outcome<()> {
+        self.require_frames()?;
+        if self.valid_values > 0 { Ok(()) } else { Err(Unavailable::NoValidPixels) }
+    }
+
+    fn values(&self) -> u64 {
+        self.frames * self.shape.pixels() as u64
+    }
+}
+
+/// `part / whole`, 0..=1; 0 of nothing.
+fn fraction(part: u64, whole: u64) -> f64 {
+    if whole > 0 { part as f64 / whole as f64 } else { 0.0 }
+}

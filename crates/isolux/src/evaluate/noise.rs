@@ -1,0 +1,188 @@
+//! Relative noise: how much two frames that should be equal differ.
+
+use serde::Serialize;
+
+use crate::plane::{Plane, Shape};
+use crate::statistics::{Moments, SIGMA_PER_MAD, median_absolute_deviation};
+
+use super::fraction;
+use super::input::{Times, same_time};
+use super::outcome::{Outcome, Unavailable};
+
+/// Differences that a frame must give for its noise to be estimated: fewer say nothing robust.
+const MINIMUM_DIFFERENCES: usize = 8;
+/// Frame pairs from which a pixel's own noise is taken; its relative error is then 1/√(2·4) = 35 %, small
+/// against the factor 2 between strata.
+const MINIMUM_PAIRS: u32 = 4;
+
+/// How the noise was estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseMethod {
+    /// From consecutive frames of one integration time.
+    Temporal,
+    /// From second differences along the rows of single frames, as no integration time was repeated. Texture
+    /// counts as noise.
+    Spatial,
+}
+
+/// Relative noise of a typical pixel in a single frame.
+///
+/// Temporal: 1.4826 · MAD over pixels of Δln A between consecutive frames of one run, over √2, averaged over
+/// frame pairs; a drift common to all pixels drops out. Spatial: the same of `ln A[c−1] − 2 ln A[c] + ln A[c+1]`
+/// over √6, averaged over frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Noise {
+    /// σ of A / A of one frame, dimensionless.
+    pub relative: f64,
+    /// How it was estimated.
+    pub method: NoiseMethod,
+    /// Frame pairs (temporal) or frames (spatial) that entered.
+    pub frames: u32,
+    /// Differences that entered / pixels of the frames that entered, 0..=1.
+    pub valid_fraction: f64,
+}
+
+/// A robust σ of each frame's differences, averaged.
+#[derive(Clone, Copy, Debug, Default)]
+struct Estimate {
+    sigma: Moments,
+    differences: u64,
+}
+
+impl Estimate {
+    /// Takes in one frame's differences, which carry `gain` times the noise of one value. Overwrites them.
+    fn push(&mut self, differences: &mut [f64], gain: f64) {
+        if differences.len() >= MINIMUM_DIFFERENCES
+            && let Some(deviation) = median_absolute_deviation(differences)
+        {
+            self.sigma.push(SIGMA_PER_MAD * deviation / gain);
+            self.differences += differences.len() as u64;
+        }
+    }
+
+    fn noise(&self, method: NoiseMethod, pixels: usize) -> Option<Noise> {
+        let frames = self.sigma.count();
+        let valid_fraction = fraction(self.differences, u64::from(frames) * pixels as u64);
+        self.sigma.mean().map(|relative| Noise { relative, method, frames, valid_fraction })
+    }
+}
+
+/// Times of the previous frame, kept.
+#[derive(Clone, Debug)]
+enum KeptTimes {
+    Uniform(f32),
+    PerPixel(Vec<f32>),
+}
+
+/// Collects differences from frame to frame and from pixel to pixel.
+#[derive(Clone, Debug)]
+pub(super) struct NoiseMeter {
+    shape: Shape,
+    same_time_ratio: f64,
+    previous: Vec<f32>,
+    previous_times: KeptTimes,
+    squares: Vec<f64>,
+    pairs: Vec<u32>,
+    temporal: Estimate,
+    spatial: Estimate,
+    scratch: Vec<f64>,
+}
+
+impl NoiseMeter {
+    pub(super) fn new(shape: Shape, same_time_ratio: f64) -> Self {
+        let pixels = shape.pixels();
+        Self {
+            shape,
+            same_time_ratio,
+            previous: vec![f32::NAN; pixels],
+            previous_times: KeptTimes::Uniform(0.0),
+            squares: vec![0.0; pixels],
+            pairs: vec![0; pixels],
+            temporal: Estimate::default(),
+            spatial: Estimate::default(),
+            scratch: Vec::new(),
+        }
+    }
+
+    /// Takes in a frame; NaN = unusable. Frames of unknown time count as one run.
+    pub(super) fn push(&mut self, usable: &[f32], times: Times<'_>) {
+        self.difference_frames(usable, times);
+        if self.temporal.sigma.count() == 0 {
+            self.difference_pixels(usable, times);
+        }
+        self.previous.copy_from_slice(usable);
+        match (times, &mut self.previous_times) {
+            (Times::PerPixel(map), KeptTimes::PerPixel(kept)) => kept.copy_from_slice(map),
+            (Times::PerPixel(map), kept) => *kept = KeptTimes::PerPixel(map.to_vec()),
+            (Times::Uniform(time), kept) => *kept = KeptTimes::Uniform(time),
+        }
+    }
+
+    fn difference_frames(&mut self, usable: &[f32], times: Times<'_>) {
+        let previous_times = match &self.previous_times {
+            KeptTimes::Uniform(time) => Times::Uniform(*time),
+            KeptTimes::PerPixel(map) => Times::PerPixel(map),
+        };
+        self.scratch.clear();
+        for (index, (&now, &before)) in usable.iter().zip(&self.previous).enumerate() {
+            let both = !now.is_nan() && !before.is_nan();
+            if both && same_time(times.at(index), previous_times.at(index), self.same_time_ratio) {
+                let (now, before) = (f64::from(now), f64::from(before));
+                self.scratch.push((now / before).ln());
+                self.squares[index] += (now - before) * (now - before);
+                self.pairs[index] = self.pairs[index].saturating_add(1);
+            }
+        }
+        // The difference of two values has twice the variance of one.
+        self.temporal.push(&mut self.scratch, 2f64.sqrt());
+    }
+
+    fn difference_pixels(&mut self, usable: &[f32], times: Times<'_>) {
+        self.scratch.clear();
+        let width = self.shape.width;
+        for (row, values) in usable.chunks_exact(width.max(1)).enumerate() {
+            for (column, triple) in values.windows(3).enumerate() {
+                let index = row * width + column;
+                let one_time = (1..3)
+                    .all(|step| same_time(times.at(index), times.at(index + step), self.same_time_ratio));
+                let [left, centre, right] = [0, 1, 2].map(|step| f64::from(triple[step]).ln());
+                let second_difference = left - 2.0 * centre + right;
+                if one_time && second_difference.is_finite() {
+                    self.scratch.push(second_difference);
+                }
+            }
+        }
+        // Weights 1, −2, 1: six times the variance of one value.
+        self.spatial.push(&mut self.scratch, 6f64.sqrt());
+    }
+
+    pub(super) fn finish(&self) -> Outcome<Noise> {
+        let pixels = self.shape.pixels();
+        self.temporal
+            .noise(NoiseMethod::Temporal, pixels)
+            .or_else(|| self.spatial.noise(NoiseMethod::Spatial, pixels))
+            .ok_or(Unavailable::NoNoiseEstimate)
+    }
+
+    /// σ of each pixel in one frame, in the unit of the values: `√(Σ Δ² / 2n)` over its n pairs of consecutive
+    /// frames of one run; `None` for fewer than four pairs.
+    pub(super) fn pixel_sigma(&self) -> impl Iterator<Item = Option<f64>> {
+        self.squares.iter().zip(&self.pairs).map(|(&squares, &pairs)| {
+            (pairs >= MINIMUM_PAIRS).then(|| (squares / (2.0 * f64::from(pairs))).sqrt())
+        })
+    }
+
+    /// Signal-to-noise ratio of each pixel whose `means` and σ are known; infinite where σ is 0, NaN elsewhere.
+    pub(super) fn signal_to_noise(&self, means: impl Iterator<Item = Option<f64>>) -> Outcome<Plane<f32>> {
+        let ratio = |(mean, sigma): (Option<f64>, Option<f64>)| match (mean, sigma) {
+            (Some(mean), Some(sigma)) => (mean / sigma) as f32,
+            _ => f32::NAN,
+        };
+        let ratios: Vec<f32> = means.zip(self.pixel_sigma()).map(ratio).collect();
+        if ratios.iter().all(|ratio| ratio.is_nan()) {
+            return Err(Unavailable::NoRepeatedFrames);
+        }
+        Plane::from_vec(self.shape, ratios).map_err(|_| Unavailable::NoRepeatedFrames)
+    }
+}
