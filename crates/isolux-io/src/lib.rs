@@ -5,8 +5,10 @@
 //! [`RecordingWriter`](recording::RecordingWriter) writes the native format. Both go frame by frame: a recording
 //! never has to fit in memory.
 
+pub mod calibration_file;
 pub mod error;
 pub mod recording;
 
+pub use calibration_file::{CalibrationFileError, read_calibration, write_calibration};
 pub use error::RecordingError;
 pub use recording::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter, open};

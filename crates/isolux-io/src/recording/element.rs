@@ -139,7 +139,10 @@ macro_rules! stored {
             const TYPE: ElementType = ElementType::$element;
 
             fn append_little_endian(values: &[Self], bytes: &mut Vec<u8>) {
-                bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+                let start = bytes.len();
+                bytes.resize(start + size_of_val(values), 0);
+                let (out, _) = bytes[start..].as_chunks_mut();
+                out.iter_mut().zip(values).for_each(|(out, value)| *out = value.to_le_bytes());
             }
         }
     )*};
@@ -200,13 +203,10 @@ pub(crate) fn append_as_little_endian(
     bytes: &[u8],
     out: &mut Vec<u8>,
 ) {
-    match order {
-        ByteOrder::Little => out.extend_from_slice(bytes),
-        ByteOrder::Big => {
-            for value in bytes.chunks_exact(element.size_bytes()) {
-                out.extend(value.iter().rev());
-            }
-        }
+    let start = out.len();
+    out.extend_from_slice(bytes);
+    if order == ByteOrder::Big {
+        out[start..].chunks_exact_mut(element.size_bytes()).for_each(<[u8]>::reverse);
     }
 }
 

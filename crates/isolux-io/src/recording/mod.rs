@@ -87,7 +87,7 @@ fn require_image(path: &Path, channel: &ChannelInfo, shape: Shape) -> Result<(),
         return Ok(());
     }
     Err(RecordingError::ChannelShape {
-        file: path.join(&channel.name),
+        file: path.join(format!("{}.npy", channel.name)),
         found: metadata::dims_text(&channel.frame_dims),
         expected: format!("an image of {shape}"),
         advice: String::new(),

@@ -23,6 +23,9 @@ pub(crate) fn open_arrays(path: &Path) -> Result<Vec<ArrayFile>, RecordingError>
         return Err(RecordingError::content(path, "an empty file", "a .npz archive"));
     }
     let mut archive = ZipArchive::new(file).map_err(|error| damaged(path, &error))?;
+    if archive.has_duplicate_names() {
+        return Err(RecordingError::content(path, "two members of one name", "each name once"));
+    }
     let mut arrays = Vec::new();
     for index in 0..archive.len() {
         if let Some((name, section)) = member(&mut archive, index, path, metadata.len())? {

@@ -13,8 +13,8 @@ use crate::error::RecordingError;
 use crate::recording::element::{ByteOrder, ElementType};
 use crate::recording::metadata::{Storage, dims_text};
 
-/// No camera has 2³⁰ values in a frame: a claim of more is damage.
-const MOST_FRAME_VALUES: u64 = 1 << 30;
+/// The largest cameras have a few million pixels: a claim of more than this is damage, or an attack on memory.
+const MOST_FRAME_VALUES: u64 = 1 << 26;
 
 /// An array whose header has been read and whose size has been checked against the bytes that are there.
 pub(crate) struct ArrayFile {

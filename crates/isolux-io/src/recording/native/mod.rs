@@ -5,8 +5,10 @@ mod channel;
 mod folder;
 mod frames;
 mod gathered;
+mod literal;
 mod mapped;
 pub(crate) mod npy;
+mod reader;
 mod sequential;
 mod stream;
 

@@ -33,11 +33,10 @@ impl SequentialFrames {
 
 /// Reads exactly `bytes` into `buffer`. The buffer grows with what is really there, never by a claim alone.
 pub(crate) fn read_into(stream: &mut SectionStream, bytes: usize, buffer: &mut Vec<u8>) -> io::Result<()> {
-    buffer.clear();
-    if buffer.capacity() >= bytes {
-        buffer.resize(bytes, 0);
+    if buffer.len() == bytes {
         return stream.read_exact(buffer);
     }
+    buffer.clear();
     let found = stream.take(bytes as u64).read_to_end(buffer)?;
     if found < bytes {
         let message = format!("{found} of {bytes} bytes are there: truncated data");

@@ -116,6 +116,9 @@ fn check_target(path: &Path, archive: bool, overwrite: bool) -> Result<(), Recor
         if archive && !metadata.is_file() {
             return Err(not("a folder, link or device"));
         }
+        if archive && !path.exists() {
+            return Err(not("JSON without the .npz it would describe"));
+        }
         if !archive {
             if !metadata.is_dir() {
                 return Err(not("a file"));
