@@ -152,7 +152,8 @@ fn amplitude_and_distance_come_from_the_bins_in_any_order_and_sign() {
 
 #[test]
 fn a_clipped_bin_saturates_its_pixel_even_where_the_amplitude_is_recorded() {
-    let bins = Array::new("<u2", &[1, 4, 1, 3], &[9.0, 9.0, 9.0, 9.0, 985.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 984.0]);
+    let bins =
+        Array::new("<u2", &[1, 4, 1, 3], &[9.0, 9.0, 9.0, 9.0, 985.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 984.0]);
     let arrays = [("phase_samples", bins), ("amplitude", Array::counting("<f4", &[1, 1, 3]))];
     let folder = Folder::described(&arrays, r#"{"saturated_phase_sample": 1000}"#);
     let mut frame = Frame::new(Shape::new(1, 3));
