@@ -1,0 +1,372 @@
+//! The command line, as clap reads it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use isolux::calibration::{REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
+use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
+use isolux::standardize::{DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::{Choice, SpecularRule};
+
+/// Makes the amplitude images of time-of-flight cameras comparable: one material has one value, whatever the
+/// integration time and the distance, without specular outliers.
+///
+/// A recording (REC) is a folder of .npy files with recording.json, or the same in one .npz with a .json beside
+/// it. `isolux info REC` says what a recording holds and what can be done with it; `isolux demo` shows
+/// everything without any input.
+#[derive(Debug, Parser)]
+#[command(name = "isolux", version, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Demo(DemoArgs),
+    Info(InfoArgs),
+    Calibrate(CalibrateArgs),
+    Standardize(StandardizeArgs),
+    Evaluate(EvaluateArgs),
+    Simulate(SimulateArgs),
+    Completions(CompletionsArgs),
+}
+
+/// Simulate a camera, calibrate it, standardize its recordings, and show what that is good for
+///
+/// Needs no input. Writes recordings, a calibration and before/after images into DIR.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  isolux demo\n  isolux demo /tmp/demo --seed 2")]
+pub struct DemoArgs {
+    /// Folder to create
+    #[arg(default_value = "isolux-demo")]
+    pub dir: PathBuf,
+    /// Seed of the simulated noise
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Replace a demo that is already in DIR
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Say what a recording holds, and what can be done with it
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  isolux info recordings/desk\n  isolux info desk.npz --json")]
+pub struct InfoArgs {
+    /// The recording
+    #[arg(value_name = "REC")]
+    pub recording: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Fit a camera's calibration from sweeps
+///
+/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), a
+/// distance sweep the polynomial over distance (`cubic`). What no recording determines is left out.
+///
+/// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
+/// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
+/// distances and a few integration times; the reference distance among them.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
+    isolux calibrate --exposure-sweep wall --skip-frames 50 -o CAMERA.json\n  \
+    isolux calibrate --distance-sweep board --exclude-time-us 200 --reference-distance-m 1 -o CAMERA.json")]
+pub struct CalibrateArgs {
+    /// A still scene, integration time varied; may be given several times
+    #[arg(long, value_name = "REC")]
+    pub exposure_sweep: Vec<PathBuf>,
+    /// A flat target at several distances; may be given several times
+    #[arg(long, value_name = "REC")]
+    pub distance_sweep: Vec<PathBuf>,
+    /// The calibration file to write
+    #[arg(short, long, value_name = "CAMERA.json")]
+    pub output: PathBuf,
+    /// Integration time at which amplitudes stay as they are, µs
+    #[arg(long, default_value_t = REFERENCE_TIME_US, value_parser = positive)]
+    pub reference_time_us: f64,
+    /// Distance at which amplitudes stay as they are, m
+    #[arg(long, default_value_t = REFERENCE_DISTANCE_M, value_parser = positive)]
+    pub reference_distance_m: f64,
+    /// Side of the central measurement window of distance sweeps, pixels
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
+    pub window: u16,
+    /// Frames to drop after each change of the integration time
+    #[arg(long, default_value_t = 0)]
+    pub skip_frames: usize,
+    /// An integration time to leave out, µs; may be given several times
+    #[arg(long, value_name = "T", value_parser = positive)]
+    pub exclude_time_us: Vec<f64>,
+    /// Name of the camera [default: that of the recordings]
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Print the calibration as JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Standardize a recording
+///
+/// The output is a recording with `standardized_amplitude` (f32, NaN where invalid) and `flags` (u16; their
+/// meaning is in its recording.json). Without -c, textbook physics is used (t_ref/t, d²), as far as the channels
+/// are there.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    isolux standardize desk -o desk-standardized\n  \
+    isolux standardize desk -c CAMERA.json -o desk-standardized.npz --keep-input\n  \
+    isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
+    isolux standardize desk -o out --time linear --distance none")]
+pub struct StandardizeArgs {
+    /// The recording
+    #[arg(value_name = "REC")]
+    pub recording: PathBuf,
+    /// The camera's calibration
+    #[arg(short, long, value_name = "CAMERA.json")]
+    pub calibration: Option<PathBuf>,
+    /// Recording to write: a folder, or an archive when the name ends in .npz
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub steps: StepArgs,
+    /// Copy the input's channels into the output
+    #[arg(long)]
+    pub keep_input: bool,
+    /// Replace OUT if it is there
+    #[arg(long)]
+    pub force: bool,
+    /// Threads to use [default: all cores]; the output does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Print the summary as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which steps to apply.
+#[derive(Debug, Default, Args)]
+pub struct StepArgs {
+    /// Terms to use where no single step is given
+    #[arg(long, value_enum, default_value_t)]
+    pub method: MethodArg,
+    /// Step for the integration time [default: by method]
+    #[arg(long, value_enum)]
+    pub time: Option<TimeArg>,
+    /// Step for the distance [default: by method]
+    #[arg(long, value_enum)]
+    pub distance: Option<DistanceArg>,
+    /// Step for highlights [default: histogram]
+    #[arg(long, value_enum)]
+    pub specular: Option<SpecularArg>,
+    /// Pixels that an intensity needs, for --specular histogram [default: max(2, 0.0005 of the valid pixels)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub specular_occurrences: Option<u32>,
+    /// Standard deviations above the mean, for --specular sigma [default: 4]
+    #[arg(long, value_name = "K", value_parser = positive)]
+    pub specular_deviations: Option<f64>,
+    /// Fraction of the maximum, for --specular percent [default: 0.9]
+    #[arg(long, value_name = "F", value_parser = fraction, conflicts_with = "specular_quantile")]
+    pub specular_fraction: Option<f64>,
+    /// Quantile instead of a fraction of the maximum, for --specular percent
+    #[arg(long, value_name = "Q", value_parser = fraction)]
+    pub specular_quantile: Option<f64>,
+    /// Flag amplitudes below this as LOW_SIGNAL, DN [default: from the calibration]
+    #[arg(long, value_name = "DN", value_parser = positive)]
+    pub low_signal_dn: Option<f64>,
+}
+
+/// Print before/after figures of a recording
+///
+/// For a still scene at several integration times: how much each pixel and the image still vary, whether one
+/// threshold keeps finding the same pixels, how far the histograms lie apart. For any scene: how the amplitude
+/// goes with distance, and the noise. The valid fraction stands beside each figure.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  isolux evaluate desk -c CAMERA.json\n  isolux evaluate desk --json")]
+pub struct EvaluateArgs {
+    /// The recording
+    #[arg(value_name = "REC")]
+    pub recording: PathBuf,
+    /// The camera's calibration
+    #[arg(short, long, value_name = "CAMERA.json")]
+    pub calibration: Option<PathBuf>,
+    #[command(flatten)]
+    pub steps: StepArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Record a scene with the simulated camera
+///
+/// SCENE is the name of a built-in scene or a TOML file of your own. `isolux simulate --list` names the scenes and
+/// cameras, `--print NAME` prints a built-in scene as a pattern for your own.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    isolux simulate --list\n  \
+    isolux simulate patches -o patches --seed 7\n  \
+    isolux simulate --print patches > mine.toml\n  \
+    isolux simulate mine.toml -o mine --camera o3d-like")]
+pub struct SimulateArgs {
+    /// Name of a built-in scene, or a TOML file
+    #[arg(required_unless_present_any = ["list", "print"])]
+    pub scene: Option<String>,
+    /// Recording to write
+    #[arg(short, long, value_name = "REC", required_unless_present_any = ["list", "print"])]
+    pub output: Option<PathBuf>,
+    /// Seed of the noise
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Name of a built-in camera, or a TOML file [default: the scene's]
+    #[arg(long, value_name = "CAMERA")]
+    pub camera: Option<String>,
+    /// Write the four raw bins too
+    #[arg(long)]
+    pub phase_samples: bool,
+    /// Write the truth too: `true_distance_m` and `reflectivity`
+    #[arg(long)]
+    pub truth: bool,
+    /// Replace the output if it is there
+    #[arg(long)]
+    pub force: bool,
+    /// Name the built-in scenes and cameras
+    #[arg(long)]
+    pub list: bool,
+    /// Print a built-in scene or camera
+    #[arg(long, value_name = "NAME", conflicts_with = "list")]
+    pub print: Option<String>,
+}
+
+/// Print completions for a shell
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  isolux completions bash > ~/.local/share/bash-completion/completions/isolux"
+)]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum MethodArg {
+    /// lut, cubic and histogram; the calibration must hold them
+    Paper,
+    /// The best terms that the calibration holds
+    #[default]
+    Best,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum TimeArg {
+    /// The calibration's lookup table
+    Lut,
+    /// t_ref / t
+    Linear,
+    /// Leave it in
+    None,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum DistanceArg {
+    /// The calibration's polynomial
+    Cubic,
+    /// (d / d_ref)²
+    Square,
+    /// Eq. 5 of the paper: ((2d)² + 1) / ((2 d_ref)² + 1)
+    Eq5,
+    /// Leave it in
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SpecularArg {
+    /// Limit at the highest intensity with enough pixels
+    Histogram,
+    /// Limit at mean + k standard deviations
+    Sigma,
+    /// Limit at a fraction of the maximum, or a quantile
+    Percent,
+    /// Leave them
+    None,
+}
+
+impl StepArgs {
+    /// The steps as the core takes them; a parameter of another rule than the chosen one is a usage error.
+    pub fn choice(&self) -> Result<Choice, crate::failure::Failure> {
+        let method = match self.method {
+            MethodArg::Paper => Method::Paper,
+            MethodArg::Best => Method::Best,
+        };
+        let time = self.time.map(|time| match time {
+            TimeArg::Lut => TimeStep::Lut,
+            TimeArg::Linear => TimeStep::Linear,
+            TimeArg::None => TimeStep::None,
+        });
+        let distance = self.distance.map(|distance| match distance {
+            DistanceArg::Cubic => DistanceStep::Cubic,
+            DistanceArg::Square => DistanceStep::Square,
+            DistanceArg::Eq5 => DistanceStep::Eq5,
+            DistanceArg::None => DistanceStep::None,
+        });
+        let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
+        Ok(Choice { method, time, distance, specular: Some(self.specular()?), low_signal_below_dn })
+    }
+
+    fn specular(&self) -> Result<SpecularStep, crate::failure::Failure> {
+        let chosen = self.specular.unwrap_or(SpecularArg::Histogram);
+        let given = [
+            (self.specular_occurrences.is_some(), "--specular-occurrences", SpecularArg::Histogram),
+            (self.specular_deviations.is_some(), "--specular-deviations", SpecularArg::Sigma),
+            (self.specular_fraction.is_some(), "--specular-fraction", SpecularArg::Percent),
+            (self.specular_quantile.is_some(), "--specular-quantile", SpecularArg::Percent),
+        ];
+        if let Some((_, option, rule)) = given.iter().find(|(given, _, rule)| *given && *rule != chosen) {
+            let (rule, chosen) = (format!("{rule:?}").to_lowercase(), format!("{chosen:?}").to_lowercase());
+            let message = format!("{option} belongs to --specular {rule}, but --specular {chosen} is chosen");
+            return Err(crate::failure::Failure::usage(message));
+        }
+        Ok(match chosen {
+            SpecularArg::Histogram => SpecularStep::Limit(SpecularRule::Histogram(HistogramRule {
+                occurrences: self.specular_occurrences,
+            })),
+            SpecularArg::Sigma => SpecularStep::Limit(SpecularRule::Sigma(SigmaRule {
+                deviations: self.specular_deviations.unwrap_or(SigmaRule::default().deviations),
+            })),
+            SpecularArg::Percent => {
+                SpecularStep::Limit(SpecularRule::Percent(match self.specular_quantile {
+                    Some(quantile) => PercentRule::Quantile(quantile),
+                    None => self.specular_fraction.map_or_else(PercentRule::default, PercentRule::OfMaximum),
+                }))
+            }
+            SpecularArg::None => SpecularStep::None,
+        })
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a positive number expected".to_owned()) }
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    let value = positive(text)?;
+    if value <= 1.0 { Ok(value) } else { Err("a fraction above 0 and up to 1 expected".to_owned()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn parameters_of_another_rule_are_refused() {
+        let steps = StepArgs { specular_deviations: Some(3.0), ..StepArgs::default() };
+        assert!(steps.choice().unwrap_err().to_string().contains("belongs to --specular sigma"));
+    }
+}

@@ -1,0 +1,216 @@
+//! `isolux standardize`: a recording in, a standardized recording out.
+
+use std::path::Path;
+
+use isolux::standardize::FrameSummary;
+use isolux::{Calibration, Frame, PixelFlags, Standardized, Standardizer};
+use isolux_io::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter};
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use crate::args::StandardizeArgs;
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use crate::frames;
+
+/// Name of the output's main channel.
+const VALUES: &str = "standardized_amplitude";
+/// Name of its flags.
+const FLAGS: &str = "flags";
+
+/// What to write besides the two channels, and how.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WriteOptions {
+    pub keep_input: bool,
+    pub overwrite: bool,
+    pub threads: Option<u16>,
+}
+
+/// Totals over all frames.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Summary {
+    pub frames: usize,
+    pub pixels: usize,
+    pub valid: usize,
+    pub time_refused: usize,
+    pub time_extrapolated: usize,
+    pub distance_extrapolated: usize,
+    pub specular: usize,
+    /// Frames in which the specular rule found no cutoff, or there was no such step.
+    pub frames_without_cutoff: usize,
+}
+
+pub fn run(args: &StandardizeArgs) -> Outcome {
+    let calibration = frames::calibration(args.calibration.as_deref())?;
+    let mut recording = isolux_io::open(&args.recording)?;
+    let standardizer =
+        Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
+    standardizer.notes().iter().for_each(console::note);
+    let options = WriteOptions { keep_input: args.keep_input, overwrite: args.force, threads: args.threads };
+    let summary = standardize(&mut *recording, &standardizer, calibration.as_ref(), &args.output, options)?;
+    if args.json {
+        return console::print_json(&json!({"steps": steps(&standardizer), "summary": summary}));
+    }
+    for step in standardizer.steps() {
+        console::print(format!("{:>9}: {} ({})", step.effect, step.term, step.parameters))?;
+    }
+    console::print(describe(&summary))?;
+    console::print(format!("written: {}", args.output.display()))
+}
+
+/// Standardizes every frame of `recording` into a new recording at `output`.
+pub fn standardize(
+    recording: &mut dyn Recording,
+    standardizer: &Standardizer,
+    calibration: Option<&Calibration>,
+    output: &Path,
+    options: WriteOptions,
+) -> Outcome<Summary> {
+    let metadata = recording.metadata().clone();
+    let kept = kept_channels(&metadata, options.keep_input)?;
+    let mut channels = vec![
+        ChannelSpec::image(VALUES, ElementType::F32, metadata.shape),
+        ChannelSpec::image(FLAGS, ElementType::U16, metadata.shape),
+    ];
+    channels.extend(kept.iter().filter_map(|name| metadata.channel(name)).map(ChannelSpec::copy_of));
+    let mut writer = RecordingWriter::create(output, metadata.frame_count, channels, options.overwrite)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| Failure::data(format!("cannot start threads: {error}")))?;
+    // Reading and writing go frame by frame and in order; only the arithmetic between is shared out.
+    let mut batch: Vec<Slot> = (0..pool.current_num_threads()).map(|_| Slot::new(&metadata)).collect();
+    let (mut summary, mut bytes) = (Summary::default(), Vec::new());
+    let progress = console::progress("standardizing", metadata.frame_count);
+    for start in (0..metadata.frame_count).step_by(batch.len()) {
+        let count = batch.len().min(metadata.frame_count - start);
+        for (offset, slot) in batch[..count].iter_mut().enumerate() {
+            recording.read_frame(start + offset, standardizer.needed(), &mut slot.frame)?;
+        }
+        pool.install(|| batch[..count].par_iter_mut().for_each(|slot| slot.apply(standardizer)));
+        for (offset, slot) in batch[..count].iter_mut().enumerate() {
+            let index = start + offset;
+            summary.add(slot.take(&metadata.path, index)?);
+            writer.push(VALUES, slot.out.amplitude.values())?;
+            writer.push(FLAGS, slot.out.flags.values())?;
+            for name in &kept {
+                recording.read_raw(name, index, &mut bytes)?;
+                writer.push_bytes(name, &bytes)?;
+            }
+            progress.inc(1);
+        }
+    }
+    progress.finish_and_clear();
+    if summary.time_refused > 0 && summary.valid == 0 {
+        let message = "every pixel's integration time is above the calibrated range or unknown, a time inside \
+                       it expected: record within it, calibrate further, or use --time linear";
+        return Err(Failure::data(format!("`{}`: {message}", metadata.path.display())));
+    }
+    writer.finish(&record(&metadata.info, &metadata.path, standardizer, calibration))?;
+    Ok(summary)
+}
+
+/// A frame and its result; one for each thread.
+struct Slot {
+    frame: Frame,
+    out: Standardized,
+    outcome: Option<Result<FrameSummary, isolux::standardize::StandardizeError>>,
+}
+
+impl Slot {
+    fn new(metadata: &Metadata) -> Self {
+        Self { frame: Frame::new(metadata.shape), out: Standardized::new(metadata.shape), outcome: None }
+    }
+
+    fn apply(&mut self, standardizer: &Standardizer) {
+        self.outcome = Some(standardizer.apply(&self.frame, &mut self.out));
+    }
+
+    fn take(&mut self, recording: &Path, index: usize) -> Outcome<FrameSummary> {
+        match self.outcome.take() {
+            Some(Ok(summary)) => Ok(summary),
+            Some(Err(error)) => Err(Failure::frame(recording, index, error)),
+            None => Err(Failure::frame(recording, index, "not processed")),
+        }
+    }
+}
+
+impl Summary {
+    fn add(&mut self, frame: FrameSummary) {
+        self.frames += 1;
+        self.pixels += frame.pixels;
+        self.valid += frame.valid;
+        self.time_refused += frame.time_refused;
+        self.time_extrapolated += frame.time_extrapolated;
+        self.distance_extrapolated += frame.distance_extrapolated;
+        self.specular += frame.specular;
+        self.frames_without_cutoff += usize::from(frame.specular_cutoff.is_none());
+    }
+}
+
+/// The input's channels that go into the output. A recording that is standardized again keeps its own results
+/// out of the way only by leaving them out.
+fn kept_channels(metadata: &Metadata, keep_input: bool) -> Outcome<Vec<String>> {
+    if !keep_input {
+        return Ok(Vec::new());
+    }
+    let stored = metadata.channels.iter().filter(|channel| channel.is_stored());
+    let names: Vec<String> = stored.map(|channel| channel.name.clone()).collect();
+    match names.iter().find(|name| [VALUES, FLAGS].contains(&name.as_str())) {
+        Some(name) => Err(Failure::usage(format!(
+            "`{}` already has a channel `{name}`, which --keep-input cannot keep beside the new one",
+            metadata.path.display()
+        ))),
+        None => Ok(names),
+    }
+}
+
+/// The output's `recording.json`: the input's, and what was done to it.
+fn record(
+    info: &RecordingInfo,
+    input: &Path,
+    standardizer: &Standardizer,
+    calibration: Option<&Calibration>,
+) -> RecordingInfo {
+    let legend: Map<String, Value> =
+        PixelFlags::legend().map(|(name, bit)| (name.to_owned(), Value::from(bit))).collect();
+    let notes: Vec<String> = standardizer.notes().iter().map(ToString::to_string).collect();
+    let mut info = info.clone();
+    info.other.insert(
+        "standardization".to_owned(),
+        json!({
+            "program": concat!("isolux ", env!("CARGO_PKG_VERSION")),
+            "input": input.display().to_string(),
+            "calibrated_camera": calibration.map(|c| c.camera.clone()),
+            "reference": calibration.map(|c| c.reference),
+            "steps": steps(standardizer),
+            "notes": notes,
+            "flag_bits": legend,
+        }),
+    );
+    info
+}
+
+fn steps(standardizer: &Standardizer) -> Value {
+    let steps = standardizer.steps().iter();
+    steps.map(|s| json!({"effect": s.effect, "term": s.term, "parameters": s.parameters})).collect()
+}
+
+fn describe(summary: &Summary) -> String {
+    let share = |count: usize| format!("{:.2} %", 100.0 * count as f64 / summary.pixels.max(1) as f64);
+    let mut lines = vec![format!("{} frames, {} of the pixels valid", summary.frames, share(summary.valid))];
+    let remarks = [
+        (summary.time_refused, "refused: integration time above the calibrated range, or unknown"),
+        (summary.time_extrapolated, "below the calibrated integration times, continued as 1/t (flagged)"),
+        (summary.distance_extrapolated, "outside the calibrated distances, continued as d² (flagged)"),
+        (summary.specular, "limited as specular (flagged)"),
+    ];
+    lines.extend(
+        remarks
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{:>9} {what}", share(count))),
+    );
+    lines.join("\n")
+}

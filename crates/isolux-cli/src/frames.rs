@@ -1,0 +1,34 @@
+//! Going through the frames of a recording.
+
+use std::path::Path;
+
+use isolux::{Calibration, Channels, Frame};
+use isolux_io::Recording;
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+
+/// Reads every frame into the same memory and hands it over with its number. `what` names the work beside the
+/// progress bar.
+pub fn for_each(
+    recording: &mut dyn Recording,
+    wanted: Channels,
+    what: &str,
+    mut visit: impl FnMut(usize, &Frame) -> Outcome,
+) -> Outcome {
+    let count = recording.metadata().frame_count;
+    let progress = console::progress(what, count);
+    let mut frame = Frame::new(recording.metadata().shape);
+    for index in 0..count {
+        recording.read_frame(index, wanted, &mut frame)?;
+        visit(index, &frame)?;
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok(())
+}
+
+/// Reads the calibration, if one is given.
+pub fn calibration(path: Option<&Path>) -> Outcome<Option<Calibration>> {
+    path.map(isolux_io::read_calibration).transpose().map_err(Failure::from)
+}
