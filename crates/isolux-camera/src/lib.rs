@@ -25,6 +25,7 @@ mod optics;
 mod pixel;
 mod plan;
 mod presets;
+mod random_camera;
 mod readout;
 pub mod scene;
 mod simulated_frame;

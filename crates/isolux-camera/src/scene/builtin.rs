@@ -10,7 +10,21 @@ macro_rules! scenes {
     };
 }
 
-scenes!["wall-sweep", "wall-sweep-smoke", "board-distances",];
+scenes![
+    "example",
+    "wall-sweep",
+    "wall-sweep-smoke",
+    "board-distances",
+    "board-distances-smoke",
+    "board-distances-unguarded",
+    "patches",
+    "patches-smoke",
+    "highlights",
+    "office-desk",
+    "office-shelf",
+    "cups",
+    "two-boards",
+];
 
 impl Scene {
     /// The built-in scene of that name.
