@@ -113,14 +113,6 @@ pub enum RecordingError {
         /// The channels that are there.
         found: String,
     },
-    /// One frame of a channel is too big for the memory there is.
-    #[error("`{}`: {bytes} bytes are needed for one frame, more than the system gives", file.display())]
-    Memory {
-        /// The channel's file.
-        file: PathBuf,
-        /// Bytes asked for.
-        bytes: usize,
-    },
     /// The output is there already.
     #[error("`{}` exists already; remove it, choose another name, or ask for it to be overwritten", path.display())]
     Exists {

@@ -1,9 +1,8 @@
 //! Reads and writes recordings of time-of-flight cameras.
 //!
-//! A recording is a sequence of frames of one camera. [`open`](recording::open) looks at what a path holds and
-//! gives back a [`Recording`](recording::Recording), whatever the format;
-//! [`RecordingWriter`](recording::RecordingWriter) writes the native format. Both go frame by frame: a recording
-//! never has to fit in memory.
+//! A recording is a sequence of frames of one camera. [`open`] looks at what a path holds and gives back a
+//! [`Recording`], whatever the format; [`RecordingWriter`] writes the native format. Both go frame by frame: a
+//! recording never has to fit in memory.
 
 pub mod calibration_file;
 pub mod error;

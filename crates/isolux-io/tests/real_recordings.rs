@@ -1,4 +1,11 @@
 //! Recordings of real cameras, where they are there: `../shared/data` beside the repository, or ISOLUX_DATA.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "tests fail by panicking"
+)]
 
 mod common;
 

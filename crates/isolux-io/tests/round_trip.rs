@@ -1,4 +1,5 @@
 //! Whatever is written reads back, and whatever order an array is stored in, its frames are the same.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
 mod common;
 
