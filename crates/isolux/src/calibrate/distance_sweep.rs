@@ -19,6 +19,12 @@ const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
 const POSITION_TOLERANCE_M: f64 = 0.005;
 /// The window's mean distance may scatter by this many standard errors before the target counts as moving.
 const STANDARD_ERRORS: f64 = 8.0;
+/// Frames whose distances scatter by more than this share are left out: what is that noisy, because the window
+/// is over-saturated or dark, has no distance to be plotted against.
+const DISTANCE_NOISE_SHARE: f64 = 0.1;
+/// A decay of which fewer frames than this share have a reliable distance is left out as a whole, like the
+/// paper's 0.2 ms: what is left of it is the lucky part of noise.
+const LEAST_RELIABLE_SHARE: f64 = 1.0 / 3.0;
 /// A distance that changes by more than this share across the window is a tilted target.
 const TILT_SHARE: f64 = 0.02;
 
@@ -30,12 +36,19 @@ pub struct DistanceSweep {
     runs: Runs,
     frames: usize,
     unusable: usize,
-    excluded: usize,
     /// Keyed by the bits of the time, NaN where it is unknown.
-    times: BTreeMap<u64, Vec<Position>>,
+    times: BTreeMap<u64, Positions>,
     /// Time of the last position, so that a change of time starts a new one.
     last_time: Option<u64>,
-    widest: Option<(usize, f64)>,
+    widest: Option<Widest>,
+}
+
+/// What was measured at one integration time.
+#[derive(Clone, Debug, Default)]
+struct Positions {
+    reliable: Vec<Position>,
+    /// Frames without a reliable distance.
+    unreliable: usize,
 }
 
 /// Frames of one place of the target.
@@ -45,10 +58,21 @@ struct Position {
     measurements: Vec<Measurement>,
 }
 
+/// The frame with the largest tilt so far.
+#[derive(Clone, Copy, Debug)]
+struct Widest {
+    frame: usize,
+    tilt: f64,
+    spread_m: f64,
+}
+
 /// One frame's window.
 #[derive(Clone, Copy, Debug)]
 struct Measurement {
     distance_m: f64,
+    /// Noise of one pixel.
+    distance_sd_m: f64,
+    /// Standard error of the mean.
     distance_error_m: f64,
     amplitude_dn: f64,
     signal_to_noise: f64,
@@ -76,7 +100,6 @@ impl DistanceSweep {
             runs: Runs::new(settings.skip_frames),
             frames: 0,
             unusable: 0,
-            excluded: 0,
             times: BTreeMap::new(),
             last_time: None,
             widest: None,
@@ -101,15 +124,19 @@ impl DistanceSweep {
         let distances_m = frame.distance_m.as_ref().ok_or(CalibrateError::NoDistance { frame: number })?;
         self.frames += 1;
         if self.runs.push(time_us) == Place::Settling || self.settings.excludes(time_us) {
-            self.excluded += 1;
             return Ok(());
         }
         let Some(measurement) = measure(frame, distances_m.values(), self.settings.window_px) else {
             self.unusable += 1;
             return Ok(());
         };
-        if self.widest.is_none_or(|(_, widest)| measurement.tilt() > widest) {
-            self.widest = Some((number, measurement.tilt()));
+        if !measurement.is_reliable() {
+            self.times.entry(time_us.to_bits()).or_default().unreliable += 1;
+            return Ok(());
+        }
+        let tilt = measurement.tilt();
+        if self.widest.is_none_or(|widest| tilt > widest.tilt) {
+            self.widest = Some(Widest { frame: number, tilt, spread_m: measurement.spread_m });
         }
         self.add(time_us.to_bits(), number, measurement);
         Ok(())
@@ -117,7 +144,7 @@ impl DistanceSweep {
 
     fn add(&mut self, time: u64, number: usize, measurement: Measurement) {
         let same_time = self.last_time.replace(time) == Some(time);
-        let positions = self.times.entry(time).or_default();
+        let positions = &mut self.times.entry(time).or_default().reliable;
         match positions.last_mut() {
             Some(last) if same_time && last.holds(measurement.distance_m) => {
                 last.measurements.push(measurement)
@@ -135,38 +162,39 @@ impl DistanceSweep {
             let frames = self.unusable;
             warnings.push(FitWarning::SaturationInWindow { recording: recording.clone(), frames });
         }
-        if let Some((frame, spread)) = self.widest.filter(|(_, spread)| *spread > TILT_SHARE) {
-            let spread_m = spread * self.distance_of(frame).unwrap_or(1.0);
+        let frames = self.times.values().map(|positions| positions.unreliable).sum();
+        if frames > 0 {
+            warnings.push(FitWarning::UnreliableDistances { recording: recording.clone(), frames });
+        }
+        if let Some(widest) = self.widest.filter(|widest| widest.tilt > TILT_SHARE) {
+            let Widest { frame, spread_m, .. } = widest;
             warnings.push(FitWarning::TargetNotFronto { recording: recording.clone(), frame, spread_m });
         }
         let (mut decays, mut used) = (Vec::new(), 0);
         for (&bits, positions) in &self.times {
-            warnings.extend(positions.iter().filter_map(|p| p.moved(recording)));
+            warnings.extend(positions.reliable.iter().filter_map(|p| p.moved(recording)));
             let time_us = Some(f64::from_bits(bits)).filter(|time| !time.is_nan());
-            match decay(recording, time_us, positions, &mut warnings) {
-                Some((decay, frames)) => {
-                    decays.push(decay);
-                    used += frames;
-                }
-                None => continue,
+            if let Some((decay, frames)) = decay(recording, time_us, positions, &mut warnings) {
+                decays.push(decay);
+                used += frames;
             }
         }
         let frames_left_out = self.frames - used;
         let source = Source { recording: self.recording, frames_used: used, frames_left_out };
         ReferenceDecays { source, decays, warnings }
     }
-
-    fn distance_of(&self, frame: usize) -> Option<f64> {
-        let positions = self.times.values().flatten();
-        let position = positions.filter(|p| p.first_frame <= frame).max_by_key(|p| p.first_frame)?;
-        position.measurements.first().map(|m| m.distance_m)
-    }
 }
 
 impl Measurement {
-    /// Change of the distance across the window, relative.
+    /// Change of the distance across the window, relative; 0 where noise explains it. The difference of two
+    /// halves' means, times two, has four times the standard error of the window's mean.
     fn tilt(&self) -> f64 {
-        self.spread_m / self.distance_m
+        let significant = self.spread_m > STANDARD_ERRORS * 4.0 * self.distance_error_m;
+        if significant { self.spread_m / self.distance_m } else { 0.0 }
+    }
+
+    fn is_reliable(&self) -> bool {
+        self.distance_sd_m <= DISTANCE_NOISE_SHARE * self.distance_m
     }
 }
 
@@ -201,10 +229,17 @@ impl Position {
 fn decay(
     recording: &str,
     integration_time_us: Option<f64>,
-    positions: &[Position],
+    positions: &Positions,
     warnings: &mut Vec<FitWarning>,
 ) -> Option<(Decay, usize)> {
-    let mut sorted: Vec<&Position> = positions.iter().collect();
+    let reliable: usize = positions.reliable.iter().map(|p| p.measurements.len()).sum();
+    let frames = reliable + positions.unreliable;
+    if (reliable as f64) < LEAST_RELIABLE_SHARE * frames as f64 {
+        let recording = recording.to_owned();
+        warnings.push(FitWarning::FewReliable { recording, integration_time_us, reliable, frames });
+        return None;
+    }
+    let mut sorted: Vec<&Position> = positions.reliable.iter().collect();
     sorted.sort_by(|a, b| a.mean(|m| m.distance_m).total_cmp(&b.mean(|m| m.distance_m)));
     let brightness = |p: &&Position| p.mean(|m| m.amplitude_dn);
     let peak =
@@ -248,9 +283,11 @@ fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> Option<Measu
     let mean = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>() / count as f64;
     let deviation = |values: &[f64]| noise::spatial(values.chunks(window.width)).unwrap_or(0.0);
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
+    let distance_sd_m = deviation(&distances);
     Some(Measurement {
         distance_m,
-        distance_error_m: deviation(&distances) / (count as f64).sqrt(),
+        distance_sd_m,
+        distance_error_m: distance_sd_m / (count as f64).sqrt(),
         amplitude_dn,
         signal_to_noise: amplitude_dn / deviation(&amplitudes),
         spread_m: slope_spread(&distances, window),
@@ -326,6 +363,16 @@ mod tests {
         assert_eq!((found.source.frames_used, found.source.frames_left_out), (0, 2));
         assert!(matches!(found.warnings[0], FitWarning::SaturationInWindow { frames: 1, .. }));
         assert!(matches!(found.warnings[1], FitWarning::LowSignal { .. }));
+    }
+
+    #[test]
+    fn windows_without_a_distance_are_left_out() {
+        let mut collapsed = frame(9000.0, 3.0, 40.0, 8.0);
+        let scattered = |row: usize, column: usize| 0.5 + ((row * 37 + column * 61) % 64) as f32 / 10.0;
+        collapsed.distance_m = Some(Plane::from_fn(collapsed.shape(), scattered));
+        let found = finish(&[collapsed, frame(9000.0, 1.0, 900.0, 1.0)]);
+        assert_eq!(found.decays[0].points.len(), 1);
+        assert!(matches!(found.warnings[0], FitWarning::UnreliableDistances { frames: 1, .. }));
     }
 
     #[test]

@@ -52,6 +52,24 @@ pub enum FitWarning {
         /// Frames left out for it.
         frames: usize,
     },
+    /// Frames of a distance sweep whose distances scatter too much.
+    UnreliableDistances {
+        /// The recording.
+        recording: String,
+        /// Frames left out for it.
+        frames: usize,
+    },
+    /// A decay left out because few of its frames have a reliable distance.
+    FewReliable {
+        /// The recording.
+        recording: String,
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+        /// Frames with a reliable distance.
+        reliable: usize,
+        /// All its frames.
+        frames: usize,
+    },
     /// Near positions where the amplitude falls towards the camera: over-saturation.
     OverSaturated {
         /// The recording.
@@ -141,9 +159,19 @@ impl fmt::Display for FitWarning {
                 "{recording}: {frames} frames left out, saturated or invalid in more than 5 % of the window: \
                  start farther away at long integration times"
             ),
+            Self::UnreliableDistances { recording, frames } => write!(
+                f,
+                "{recording}: {frames} frames left out, the distances in the window scatter by more than 10 %: \
+                 over-saturated, or too dark"
+            ),
+            Self::FewReliable { recording, integration_time_us, reliable, frames } => write!(
+                f,
+                "{recording}, {}: left out, only {reliable} of its {frames} frames have reliable distances",
+                time(*integration_time_us)
+            ),
             Self::OverSaturated { recording, integration_time_us, positions, from_m } => write!(
                 f,
-                "{recording}, {}: {positions} positions nearer than {from_m:.3} m left out as over-saturated",
+                "{recording}, {}: {positions} position(s) nearer than {from_m:.3} m left out as over-saturated",
                 time(*integration_time_us)
             ),
             Self::LowSignal { recording, integration_time_us, signal_to_noise } => write!(
