@@ -68,7 +68,7 @@ pub enum CameraError {
 
 /// A field whose value makes no sense.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}`{field}` is {found}, but {expected} is expected", location(.document, *.line))]
+#[error("{}`{field}` is {found}; expected: {expected}", location(.document, *.line))]
 pub struct InvalidValue {
     /// Name of the file, empty when the value was not read from one.
     pub document: String,

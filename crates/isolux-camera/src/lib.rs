@@ -5,6 +5,16 @@
 //! renders any frame by its index, with the truth beside it; the same seed gives the same bits on every machine
 //! and any number of threads.
 //!
+//! What a calibration finds can be compared with the camera's own laws:
+//!
+//! | fitted | truth |
+//! |---|---|
+//! | distance term | [`CameraModel::distance_response`], [`CameraModel::led_decay`], [`CameraModel::harmonic_factor`] |
+//! | illumination profile | [`CameraModel::illumination_profile`] |
+//! | time response | [`CameraModel::noise_free_amplitude_dn`], [`FullWell`] |
+//! | noise | [`CameraModel::bin_noise_electrons`] |
+//! | standardized amplitude | [`Truth::true_standardized`], [`Truth::true_standardized_material`] |
+//!
 //! ```
 //! use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 //!
@@ -16,6 +26,7 @@
 //! assert_eq!(out.frame.amplitude.shape(), simulation.shape());
 //! # Ok::<(), isolux_camera::CameraError>(())
 //! ```
+mod catalogue;
 mod document;
 mod error;
 mod full_well;

@@ -111,7 +111,7 @@ fn integration_times_us(model: &CameraModel, run: &Run, index: usize) -> Result<
         field: format!("run[{index}].registers.last"),
         found: range.last.to_string(),
         expected: format!(
-            "at most {}, the largest register of the camera `{}`,",
+            "at most {}, the largest register of the camera `{}`",
             register.maximum, model.name
         ),
     })

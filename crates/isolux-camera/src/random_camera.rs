@@ -11,7 +11,7 @@ impl CameraModel {
     /// view, frequency, contrast, lobe, lens, harmonic, well, noise, converter, warm-up and register.
     ///
     /// The built-in scenes suit it: the light is chosen relative to the well so that a white surface at 0.9 m
-    /// saturates between about 15 and 50 ms.
+    /// reaches its largest amplitude between 8 and 48 ms.
     #[must_use]
     pub fn random(seed: u64) -> Self {
         let mut noise = Noise::new(seed, Purpose::RandomCamera, 0);
@@ -74,6 +74,19 @@ fn intrinsics(noise: &mut Noise, height: usize, width: usize) -> Intrinsics {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_white_wall_saturates_within_the_register() {
+        for seed in 0..200 {
+            let camera = CameraModel::random(seed);
+            let light = camera.light(0.7, 0.5, 0.9);
+            let amplitude = |time_us: &f64| camera.noise_free_amplitude_dn(light, *time_us);
+            let times = (0..=camera.integration_register.maximum)
+                .filter_map(|n| camera.integration_register.integration_time_us(n));
+            let peak_us = times.max_by(|a, b| amplitude(a).total_cmp(&amplitude(b))).unwrap();
+            assert!((8_000.0..48_000.0).contains(&peak_us), "{seed}: {peak_us}");
+        }
+    }
 
     #[test]
     fn random_cameras_are_valid_differ_and_survive_their_file() {

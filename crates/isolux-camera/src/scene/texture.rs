@@ -102,7 +102,11 @@ impl Texture {
         };
         let reflectivity = |name: &str, values: &[f64]| {
             let right = values.iter().all(|value| (0.0..=1.0).contains(value));
-            ensure(right, || format!("{path}.{name}"), values, "reflectivities from 0 to 1")
+            let field = || format!("{path}.{name}");
+            match values {
+                [value] => ensure(right, field, value, "a reflectivity from 0 to 1"),
+                _ => ensure(right, field, values, "reflectivities from 0 to 1"),
+            }
         };
         match self {
             Self::Uniform(value) => reflectivity("uniform", &[*value]),
