@@ -39,7 +39,8 @@ pub trait Recording: Send {
     /// # Errors
     /// [`RecordingError::NoFrame`]; [`RecordingError::MissingAmplitude`] when amplitude is wanted and the
     /// recording has no way to it; [`RecordingError::Value`] for an integration time that is negative or
-    /// infinite, or, of a whole frame, 0, and for a label that is no integer of 0 to 255; and what the files bring. `frame` is then partly filled.
+    /// infinite, or, of a whole frame, 0, and for a label beyond 0 to 255; and what the files bring. `frame` is
+    /// then partly filled.
     fn read_frame(&mut self, index: usize, wanted: Channels, frame: &mut Frame)
     -> Result<(), RecordingError>;
 

@@ -70,9 +70,11 @@ impl ChannelSpec {
 /// ```
 #[derive(Debug)]
 pub struct RecordingWriter {
+    // Before the output: the files are closed before their folder is removed, which not every system allows
+    // otherwise.
+    channels: Vec<OpenChannel>,
     output: Output,
     frame_count: usize,
-    channels: Vec<OpenChannel>,
     bytes: Vec<u8>,
 }
 
