@@ -16,13 +16,13 @@ use isolux::{Choice, SpecularRule};
 /// everything without any input.
 #[derive(Debug, Parser)]
 #[command(name = "isolux", version, max_term_width = 100)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
-    pub command: Command,
+    pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     Demo(DemoArgs),
     Info(InfoArgs),
     Calibrate(CalibrateArgs),
@@ -37,28 +37,25 @@ pub enum Command {
 /// Needs no input. Writes recordings, a calibration and before/after images into DIR.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux demo\n  isolux demo /tmp/demo --seed 2")]
-pub struct DemoArgs {
-    /// Folder to create
+pub(crate) struct DemoArgs {
+    /// Folder to create; an earlier demo in it is replaced
     #[arg(default_value = "isolux-demo")]
-    pub dir: PathBuf,
+    pub(crate) dir: PathBuf,
     /// Seed of the simulated noise
     #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Replace a demo that is already in DIR
-    #[arg(long)]
-    pub force: bool,
+    pub(crate) seed: u64,
 }
 
 /// Say what a recording holds, and what can be done with it
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux info recordings/desk\n  isolux info desk.npz --json")]
-pub struct InfoArgs {
+pub(crate) struct InfoArgs {
     /// The recording
     #[arg(value_name = "REC")]
-    pub recording: PathBuf,
+    pub(crate) recording: PathBuf,
     /// Print JSON
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Fit a camera's calibration from sweeps
@@ -74,37 +71,37 @@ pub struct InfoArgs {
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
     isolux calibrate --exposure-sweep wall --skip-frames 50 -o CAMERA.json\n  \
     isolux calibrate --distance-sweep board --exclude-time-us 200 --reference-distance-m 1 -o CAMERA.json")]
-pub struct CalibrateArgs {
+pub(crate) struct CalibrateArgs {
     /// A still scene, integration time varied; may be given several times
     #[arg(long, value_name = "REC")]
-    pub exposure_sweep: Vec<PathBuf>,
+    pub(crate) exposure_sweep: Vec<PathBuf>,
     /// A flat target at several distances; may be given several times
     #[arg(long, value_name = "REC")]
-    pub distance_sweep: Vec<PathBuf>,
+    pub(crate) distance_sweep: Vec<PathBuf>,
     /// The calibration file to write
     #[arg(short, long, value_name = "CAMERA.json")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Integration time at which amplitudes stay as they are, µs
     #[arg(long, default_value_t = REFERENCE_TIME_US, value_parser = positive)]
-    pub reference_time_us: f64,
+    pub(crate) reference_time_us: f64,
     /// Distance at which amplitudes stay as they are, m
     #[arg(long, default_value_t = REFERENCE_DISTANCE_M, value_parser = positive)]
-    pub reference_distance_m: f64,
+    pub(crate) reference_distance_m: f64,
     /// Side of the central measurement window of distance sweeps, pixels
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
-    pub window: u16,
+    pub(crate) window: u16,
     /// Frames to drop after each change of the integration time
     #[arg(long, default_value_t = 0)]
-    pub skip_frames: usize,
+    pub(crate) skip_frames: usize,
     /// An integration time to leave out, µs; may be given several times
     #[arg(long, value_name = "T", value_parser = positive)]
-    pub exclude_time_us: Vec<f64>,
+    pub(crate) exclude_time_us: Vec<f64>,
     /// Name of the camera [default: that of the recordings]
     #[arg(long, value_name = "NAME")]
-    pub camera: Option<String>,
+    pub(crate) camera: Option<String>,
     /// Print the calibration as JSON instead of a table
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Standardize a recording
@@ -118,62 +115,62 @@ pub struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o desk-standardized.npz --keep-input\n  \
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none")]
-pub struct StandardizeArgs {
+pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]
-    pub recording: PathBuf,
+    pub(crate) recording: PathBuf,
     /// The camera's calibration
     #[arg(short, long, value_name = "CAMERA.json")]
-    pub calibration: Option<PathBuf>,
+    pub(crate) calibration: Option<PathBuf>,
     /// Recording to write: a folder, or an archive when the name ends in .npz
     #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     #[command(flatten)]
-    pub steps: StepArgs,
+    pub(crate) steps: StepArgs,
     /// Copy the input's channels into the output
     #[arg(long)]
-    pub keep_input: bool,
+    pub(crate) keep_input: bool,
     /// Replace OUT if it is there
     #[arg(long)]
-    pub force: bool,
+    pub(crate) force: bool,
     /// Threads to use [default: all cores]; the output does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
-    pub threads: Option<u16>,
+    pub(crate) threads: Option<u16>,
     /// Print the summary as JSON
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Which steps to apply.
 #[derive(Debug, Default, Args)]
-pub struct StepArgs {
+pub(crate) struct StepArgs {
     /// Terms to use where no single step is given
     #[arg(long, value_enum, default_value_t)]
-    pub method: MethodArg,
+    pub(crate) method: MethodArg,
     /// Step for the integration time [default: by method]
     #[arg(long, value_enum)]
-    pub time: Option<TimeArg>,
+    pub(crate) time: Option<TimeArg>,
     /// Step for the distance [default: by method]
     #[arg(long, value_enum)]
-    pub distance: Option<DistanceArg>,
+    pub(crate) distance: Option<DistanceArg>,
     /// Step for highlights [default: histogram]
     #[arg(long, value_enum)]
-    pub specular: Option<SpecularArg>,
+    pub(crate) specular: Option<SpecularArg>,
     /// Pixels that an intensity needs, for --specular histogram [default: max(2, 0.0005 of the valid pixels)]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub specular_occurrences: Option<u32>,
+    pub(crate) specular_occurrences: Option<u32>,
     /// Standard deviations above the mean, for --specular sigma [default: 4]
     #[arg(long, value_name = "K", value_parser = positive)]
-    pub specular_deviations: Option<f64>,
+    pub(crate) specular_deviations: Option<f64>,
     /// Fraction of the maximum, for --specular percent [default: 0.9]
     #[arg(long, value_name = "F", value_parser = fraction, conflicts_with = "specular_quantile")]
-    pub specular_fraction: Option<f64>,
+    pub(crate) specular_fraction: Option<f64>,
     /// Quantile instead of a fraction of the maximum, for --specular percent
     #[arg(long, value_name = "Q", value_parser = fraction)]
-    pub specular_quantile: Option<f64>,
+    pub(crate) specular_quantile: Option<f64>,
     /// Flag amplitudes below this as LOW_SIGNAL, DN [default: from the calibration]
     #[arg(long, value_name = "DN", value_parser = positive)]
-    pub low_signal_dn: Option<f64>,
+    pub(crate) low_signal_dn: Option<f64>,
 }
 
 /// Print before/after figures of a recording
@@ -183,18 +180,21 @@ pub struct StepArgs {
 /// goes with distance, and the noise. The valid fraction stands beside each figure.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux evaluate desk -c CAMERA.json\n  isolux evaluate desk --json")]
-pub struct EvaluateArgs {
+pub(crate) struct EvaluateArgs {
     /// The recording
     #[arg(value_name = "REC")]
-    pub recording: PathBuf,
+    pub(crate) recording: PathBuf,
     /// The camera's calibration
     #[arg(short, long, value_name = "CAMERA.json")]
-    pub calibration: Option<PathBuf>,
+    pub(crate) calibration: Option<PathBuf>,
     #[command(flatten)]
-    pub steps: StepArgs,
+    pub(crate) steps: StepArgs,
+    /// Leave out pixels flagged LOW_SIGNAL or SATURATED, before and after
+    #[arg(long)]
+    pub(crate) trusted: bool,
     /// Print JSON
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Record a scene with the simulated camera
@@ -207,34 +207,34 @@ pub struct EvaluateArgs {
     isolux simulate patches -o patches --seed 7\n  \
     isolux simulate --print patches > mine.toml\n  \
     isolux simulate mine.toml -o mine --camera o3d-like")]
-pub struct SimulateArgs {
+pub(crate) struct SimulateArgs {
     /// Name of a built-in scene, or a TOML file
     #[arg(required_unless_present_any = ["list", "print"])]
-    pub scene: Option<String>,
+    pub(crate) scene: Option<String>,
     /// Recording to write
     #[arg(short, long, value_name = "REC", required_unless_present_any = ["list", "print"])]
-    pub output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Name of a built-in camera, or a TOML file [default: the scene's]
     #[arg(long, value_name = "CAMERA")]
-    pub camera: Option<String>,
+    pub(crate) camera: Option<String>,
     /// Write the four raw bins too
     #[arg(long)]
-    pub phase_samples: bool,
+    pub(crate) phase_samples: bool,
     /// Write the truth too: `true_distance_m` and `reflectivity`
     #[arg(long)]
-    pub truth: bool,
+    pub(crate) truth: bool,
     /// Replace the output if it is there
     #[arg(long)]
-    pub force: bool,
+    pub(crate) force: bool,
     /// Name the built-in scenes and cameras
     #[arg(long)]
-    pub list: bool,
+    pub(crate) list: bool,
     /// Print a built-in scene or camera
     #[arg(long, value_name = "NAME", conflicts_with = "list")]
-    pub print: Option<String>,
+    pub(crate) print: Option<String>,
 }
 
 /// Print completions for a shell
@@ -242,14 +242,14 @@ pub struct SimulateArgs {
 #[command(
     after_help = "Example:\n  isolux completions bash > ~/.local/share/bash-completion/completions/isolux"
 )]
-pub struct CompletionsArgs {
+pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
-    pub shell: clap_complete::Shell,
+    pub(crate) shell: clap_complete::Shell,
 }
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum MethodArg {
+pub(crate) enum MethodArg {
     /// lut, cubic and histogram; the calibration must hold them
     Paper,
     /// The best terms that the calibration holds
@@ -258,7 +258,7 @@ pub enum MethodArg {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum TimeArg {
+pub(crate) enum TimeArg {
     /// The calibration's lookup table
     Lut,
     /// t_ref / t
@@ -268,7 +268,7 @@ pub enum TimeArg {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum DistanceArg {
+pub(crate) enum DistanceArg {
     /// The calibration's polynomial
     Cubic,
     /// (d / d_ref)²
@@ -280,7 +280,7 @@ pub enum DistanceArg {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SpecularArg {
+pub(crate) enum SpecularArg {
     /// Limit at the highest intensity with enough pixels
     Histogram,
     /// Limit at mean + k standard deviations
@@ -293,7 +293,7 @@ pub enum SpecularArg {
 
 impl StepArgs {
     /// The steps as the core takes them; a parameter of another rule than the chosen one is a usage error.
-    pub fn choice(&self) -> Result<Choice, crate::failure::Failure> {
+    pub(crate) fn choice(&self) -> Result<Choice, crate::failure::Failure> {
         let method = match self.method {
             MethodArg::Paper => Method::Paper,
             MethodArg::Best => Method::Best,

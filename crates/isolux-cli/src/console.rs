@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::failure::{Failure, Outcome};
 
 /// Prints a result. A closed pipe (`isolux info REC | head -1`) ends the output, not the command.
-pub fn print(text: impl Display) -> Outcome {
+pub(crate) fn print(text: impl Display) -> Outcome {
     match writeln!(io::stdout(), "{text}") {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::data(format!("cannot write to standard output: {error}")))
@@ -19,7 +19,7 @@ pub fn print(text: impl Display) -> Outcome {
 }
 
 /// Prints a value as JSON.
-pub fn print_json(value: &impl serde::Serialize) -> Outcome {
+pub(crate) fn print_json(value: &impl serde::Serialize) -> Outcome {
     print(
         serde_json::to_string_pretty(value)
             .map_err(|error| Failure::data(format!("cannot print JSON: {error}")))?,
@@ -27,18 +27,18 @@ pub fn print_json(value: &impl serde::Serialize) -> Outcome {
 }
 
 /// Prints a remark that is no result.
-pub fn note(text: impl Display) {
+pub(crate) fn note(text: impl Display) {
     // Nothing can be done about a standard error that is closed.
     let _ = writeln!(io::stderr(), "note: {text}");
 }
 
 /// Prints a remark about something that may spoil the result.
-pub fn warn(text: impl Display) {
+pub(crate) fn warn(text: impl Display) {
     let _ = writeln!(io::stderr(), "warning: {text}");
 }
 
 /// A progress bar over `frames`; invisible unless stderr is a terminal.
-pub fn progress(what: &str, frames: usize) -> ProgressBar {
+pub(crate) fn progress(what: &str, frames: usize) -> ProgressBar {
     let bar = ProgressBar::new(frames as u64);
     let template = "{prefix:>22} [{bar:32}] {pos}/{len} frames, {per_sec}, {eta} left";
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -51,7 +51,7 @@ pub fn progress(what: &str, frames: usize) -> ProgressBar {
 
 /// Lays out rows in columns, two spaces apart; the first row is a header where `header` is set. The first column
 /// is aligned left, all others right.
-pub fn table(rows: &[Vec<String>]) -> String {
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width =
         |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();

@@ -10,32 +10,32 @@ use isolux::standardize::PlanError;
 /// A failed command.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
-pub struct Failure {
+pub(crate) struct Failure {
     message: String,
     usage: bool,
 }
 
 /// What commands return.
-pub type Outcome<T = ()> = Result<T, Failure>;
+pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
     /// The data are bad.
-    pub fn data(message: impl Display) -> Self {
+    pub(crate) fn data(message: impl Display) -> Self {
         Self { message: message.to_string(), usage: false }
     }
 
     /// The call is bad.
-    pub fn usage(message: impl Display) -> Self {
+    pub(crate) fn usage(message: impl Display) -> Self {
         Self { message: message.to_string(), usage: true }
     }
 
     /// Bad data in a frame of a recording.
-    pub fn frame(recording: &Path, frame: usize, message: impl Display) -> Self {
+    pub(crate) fn frame(recording: &Path, frame: usize, message: impl Display) -> Self {
         Self::data(format!("`{}`, frame {frame}: {message}", recording.display()))
     }
 
     /// The process's exit code.
-    pub fn exit_code(&self) -> ExitCode {
+    pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(if self.usage { 2 } else { 1 })
     }
 }

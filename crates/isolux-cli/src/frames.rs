@@ -10,7 +10,7 @@ use crate::failure::{Failure, Outcome};
 
 /// Reads every frame into the same memory and hands it over with its number. `what` names the work beside the
 /// progress bar.
-pub fn for_each(
+pub(crate) fn for_each(
     recording: &mut dyn Recording,
     wanted: Channels,
     what: &str,
@@ -29,6 +29,6 @@ pub fn for_each(
 }
 
 /// Reads the calibration, if one is given.
-pub fn calibration(path: Option<&Path>) -> Outcome<Option<Calibration>> {
+pub(crate) fn calibration(path: Option<&Path>) -> Outcome<Option<Calibration>> {
     path.map(isolux_io::read_calibration).transpose().map_err(Failure::from)
 }

@@ -1,6 +1,5 @@
 //! Grey PNG pictures of planes.
 
-use std::io::Write;
 use std::path::Path;
 
 use isolux::{Plane, Shape};
@@ -9,12 +8,12 @@ use crate::failure::{Failure, Outcome};
 
 /// Pixels between the pictures of a montage.
 const GAP: usize = 4;
-/// Grey of gaps and of invalid pixels' absence is told apart by this level.
+/// Grey between the pictures.
 const GAP_GREY: u8 = 255;
 
 /// Writes pictures in a grid: one row of the grid per inner list, all of one shape, black at 0 and white at the
 /// row's `white`. Invalid pixels are black. The file is written whole or not at all.
-pub fn write_montage(path: &Path, rows: &[(Vec<Plane<f32>>, f32)]) -> Outcome {
+pub(crate) fn write_montage(path: &Path, rows: &[(Vec<Plane<f32>>, f32)]) -> Outcome {
     let Some(shape) = rows.first().and_then(|(planes, _)| planes.first()).map(Plane::shape) else {
         return Err(Failure::data(format!("`{}`: no picture to write", path.display())));
     };
@@ -27,7 +26,10 @@ pub fn write_montage(path: &Path, rows: &[(Vec<Plane<f32>>, f32)]) -> Outcome {
             paste(plane, *white, &mut pixels, top, left);
         }
     }
-    write(path, &pixels).map_err(|error| Failure::data(format!("cannot write `{}`: {error}", path.display())))
+    let failed =
+        |error: &dyn std::fmt::Display| Failure::data(format!("cannot write `{}`: {error}", path.display()));
+    let bytes = encode(&pixels).map_err(|error| failed(&error))?;
+    isolux_io::write_whole(path, &bytes).map_err(|error| failed(&error))
 }
 
 fn paste(plane: &Plane<f32>, white: f32, canvas: &mut Plane<u8>, top: usize, left: usize) {
@@ -42,23 +44,20 @@ fn paste(plane: &Plane<f32>, white: f32, canvas: &mut Plane<u8>, top: usize, lef
     }
 }
 
-fn write(path: &Path, pixels: &Plane<u8>) -> Result<(), Box<dyn std::error::Error>> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+fn encode(pixels: &Plane<u8>) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let Shape { height, width } = pixels.shape();
-    let mut encoder = png::Encoder::new(&mut file, u32::try_from(width)?, u32::try_from(height)?);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, u32::try_from(width)?, u32::try_from(height)?);
     encoder.set_color(png::ColorType::Grayscale);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels.values())?;
     writer.finish()?;
-    file.flush()?;
-    file.persist(path)?;
-    Ok(())
+    Ok(bytes)
 }
 
 /// The value below which `fraction` of the valid pixels of all planes lie; 1 where there are none.
-pub fn white_level(planes: &[Plane<f32>], fraction: f64) -> f32 {
+pub(crate) fn white_level(planes: &[Plane<f32>], fraction: f64) -> f32 {
     let valid = planes.iter().flat_map(|plane| plane.values()).filter(|value| value.is_finite());
     let mut values: Vec<f64> = valid.map(|&value| f64::from(value)).collect();
     isolux::statistics::quantile(&mut values, fraction).filter(|level| *level > 0.0).unwrap_or(1.0) as f32

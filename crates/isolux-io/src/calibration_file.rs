@@ -1,12 +1,14 @@
 //! The calibration file, `CAMERA.json`: written for people to read, strict when read.
 
 use std::fs;
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use isolux::Calibration;
 use isolux::terms::ParameterError;
 use serde_json::Value;
+
+use crate::whole_file::write_whole;
 
 /// A calibration takes kilobytes; a larger file is something else.
 const LONGEST_BYTES: u64 = 16 << 20;
@@ -126,13 +128,8 @@ pub fn parse_calibration(bytes: &[u8], path: &Path) -> Result<Calibration, Calib
 /// [`CalibrationFileError::Io`], or [`CalibrationFileError::Value`] for a calibration that could not be read back.
 pub fn write_calibration(calibration: &Calibration, path: &Path) -> Result<(), CalibrationFileError> {
     calibration.check().map_err(|source| CalibrationFileError::Value { path: path.to_owned(), source })?;
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file =
-        tempfile::NamedTempFile::new_in(folder).map_err(CalibrationFileError::io("create", path))?;
     let text = calibration_text(calibration, path)?;
-    file.write_all(text.as_bytes()).map_err(CalibrationFileError::io("write", path))?;
-    let persisted = file.persist(path).map_err(|error| error.error);
-    persisted.map(drop).map_err(CalibrationFileError::io("write", path))
+    write_whole(path, text.as_bytes()).map_err(CalibrationFileError::io("write", path))
 }
 
 /// The text of the file. `path` is for messages.

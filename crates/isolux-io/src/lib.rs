@@ -7,7 +7,9 @@
 pub mod calibration_file;
 pub mod error;
 pub mod recording;
+mod whole_file;
 
 pub use calibration_file::{CalibrationFileError, read_calibration, write_calibration};
 pub use error::RecordingError;
 pub use recording::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter, open};
+pub use whole_file::write_whole;

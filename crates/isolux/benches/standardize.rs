@@ -1,6 +1,8 @@
 //! The point-wise chain beside a copy of the same bytes, and the whole chain with its highlights, at the size of
 //! an SR-3100 and at one megapixel. Run with `cargo bench -p isolux`; compare ratios, not seconds.
 
+#![expect(clippy::expect_used, reason = "a benchmark that cannot run must stop")]
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};

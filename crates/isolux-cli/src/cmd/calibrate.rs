@@ -14,7 +14,7 @@ use crate::console::{self, table};
 use crate::failure::{Failure, Outcome};
 use crate::frames;
 
-pub fn run(args: &CalibrateArgs) -> Outcome {
+pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     if args.exposure_sweep.is_empty() && args.distance_sweep.is_empty() {
         return Err(Failure::usage(
             "nothing to fit: give --exposure-sweep REC or --distance-sweep REC, or both",
@@ -41,7 +41,7 @@ pub fn run(args: &CalibrateArgs) -> Outcome {
 }
 
 /// Measures the sweeps and fits what they determine.
-pub fn fit(
+pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
     exposure_sweeps: &[PathBuf],
@@ -98,7 +98,7 @@ fn measure(
 }
 
 /// The fit, for a person to judge.
-pub fn describe(calibration: &Calibration, report: &FitReport) -> String {
+pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String {
     let mut text = vec![format!("camera: {}", calibration.camera.as_deref().unwrap_or("(not named)"))];
     if let Some(lut) = &calibration.terms.lut {
         text.push(format!("\nlut, multiplier over integration time: {}", quality(&lut.fit, "times")));

@@ -3,7 +3,7 @@
 use isolux::evaluate::{
     Comparison, ComparisonRow, EvaluationFrame, EvaluationSettings, Evaluator, Unavailable, nearest_reference,
 };
-use isolux::{Calibration, Channels, Frame, IntegrationTime, Standardized, Standardizer};
+use isolux::{Calibration, Channels, Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
 use isolux_io::Recording;
 use serde_json::json;
 
@@ -12,13 +12,14 @@ use crate::console::{self, table};
 use crate::failure::{Failure, Outcome};
 use crate::frames;
 
-pub fn run(args: &EvaluateArgs) -> Outcome {
+pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
     let standardizer =
         Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
     standardizer.notes().iter().for_each(console::note);
-    let comparison = compare(&mut *recording, &standardizer, calibration.as_ref())?;
+    let pixels = if args.trusted { Pixels::Trusted } else { Pixels::Valid };
+    let comparison = compare(&mut *recording, &standardizer, calibration.as_ref(), pixels)?;
     if args.json {
         let steps: Vec<&str> = standardizer.steps().iter().map(|step| step.term).collect();
         return console::print_json(&json!({"steps": steps, "comparison": comparison}));
@@ -26,18 +27,28 @@ pub fn run(args: &EvaluateArgs) -> Outcome {
     console::print(describe(&comparison))
 }
 
+/// Which pixels count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pixels {
+    /// Before and after, those with a value.
+    Valid,
+    /// Before and after the same: those with a standardized value and neither LOW_SIGNAL nor SATURATED.
+    Trusted,
+}
+
 /// Evaluates the raw and the standardized amplitude of the same frames. Two passes: one over the integration
 /// times to find the reference exposure, one over the frames.
-pub fn compare(
+pub(crate) fn compare(
     recording: &mut dyn Recording,
     standardizer: &Standardizer,
     calibration: Option<&Calibration>,
+    pixels: Pixels,
 ) -> Outcome<Comparison> {
     let metadata = recording.metadata().clone();
     let reference_us = calibration
         .and_then(|c| c.reference.integration_time_us)
         .unwrap_or(isolux::calibration::REFERENCE_TIME_US);
-    let mut evaluation = Both::new(&metadata, standardizer);
+    let mut evaluation = Both::new(&metadata, standardizer, pixels);
     let wanted = standardizer.needed() | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::TARGET;
     if let Some(index) = reference_frame(recording, reference_us)? {
         let mut frame = Frame::new(metadata.shape);
@@ -65,16 +76,19 @@ fn reference_frame(recording: &mut dyn Recording, reference_us: f64) -> Outcome<
 /// The two evaluators and what makes the second's frames.
 struct Both<'a> {
     standardizer: &'a Standardizer,
+    pixels: Pixels,
     out: Standardized,
+    trusted: Plane<PixelFlags>,
     before: Evaluator,
     after: Evaluator,
 }
 
 impl<'a> Both<'a> {
-    fn new(metadata: &isolux_io::Metadata, standardizer: &'a Standardizer) -> Self {
+    fn new(metadata: &isolux_io::Metadata, standardizer: &'a Standardizer, pixels: Pixels) -> Self {
         let evaluator = || Evaluator::new(metadata.shape, EvaluationSettings::default());
         let out = Standardized::new(metadata.shape);
-        Self { standardizer, out, before: evaluator(), after: evaluator() }
+        let trusted = Plane::filled(metadata.shape, PixelFlags::empty());
+        Self { standardizer, pixels, out, trusted, before: evaluator(), after: evaluator() }
     }
 
     fn take(
@@ -83,9 +97,15 @@ impl<'a> Both<'a> {
         pass: fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>,
     ) -> Result<(), isolux::standardize::StandardizeError> {
         self.standardizer.apply(frame, &mut self.out)?;
-        let standardized = EvaluationFrame::of_standardized(frame, &self.out.amplitude, &self.out.flags);
-        pass(&mut self.before, &EvaluationFrame::of_raw(frame))?;
-        Ok(pass(&mut self.after, &standardized)?)
+        let (before_flags, after_flags) = match self.pixels {
+            Pixels::Valid => (&frame.flags, &self.out.flags),
+            Pixels::Trusted => {
+                mark_distrusted(&self.out.flags, &mut self.trusted);
+                (&self.trusted, &self.trusted)
+            }
+        };
+        pass(&mut self.before, &EvaluationFrame::of_standardized(frame, &frame.amplitude, before_flags))?;
+        Ok(pass(&mut self.after, &EvaluationFrame::of_standardized(frame, &self.out.amplitude, after_flags))?)
     }
 
     fn set_reference(
@@ -100,12 +120,25 @@ impl<'a> Both<'a> {
     }
 }
 
+/// The flags with INVALID where a pixel is LOW_SIGNAL or SATURATED.
+fn mark_distrusted(flags: &Plane<PixelFlags>, out: &mut Plane<PixelFlags>) {
+    let distrusted = PixelFlags::LOW_SIGNAL | PixelFlags::SATURATED;
+    for (out, &flags) in out.values_mut().iter_mut().zip(flags.values()) {
+        *out = if flags.intersects(distrusted) { flags | PixelFlags::INVALID } else { flags };
+    }
+}
+
 /// The figures as a table; those that the recording cannot tell are listed below with the reason.
-pub fn describe(comparison: &Comparison) -> String {
+pub(crate) fn describe(comparison: &Comparison) -> String {
+    describe_rows(comparison, |_| true)
+}
+
+/// Like [`describe`], for the figures whose name is wanted.
+pub(crate) fn describe_rows(comparison: &Comparison, wanted: impl Fn(&str) -> bool) -> String {
     let header = ["figure", "before", "after", "better", "valid before", "valid after"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     let mut missing: Vec<(String, Unavailable)> = Vec::new();
-    for row in comparison.rows() {
+    for row in comparison.rows().into_iter().filter(|row| wanted(&row.metric)) {
         match (row.before, row.after) {
             (Err(reason), _) | (_, Err(reason)) => missing.push((row.metric, reason)),
             (Ok(before), Ok(after)) => rows.push(line(&row, before, after)),

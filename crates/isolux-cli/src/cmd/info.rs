@@ -57,7 +57,7 @@ struct Spread {
     maximum: f64,
 }
 
-pub fn run(args: &InfoArgs) -> Outcome {
+pub(crate) fn run(args: &InfoArgs) -> Outcome {
     let mut recording = isolux_io::open(&args.recording)?;
     let report = report(&mut *recording)?;
     if args.json { console::print_json(&report) } else { console::print(describe(&report)) }

@@ -1,9 +1,9 @@
 //! One file per command.
 
-pub mod calibrate;
-pub mod completions;
-pub mod demo;
-pub mod evaluate;
-pub mod info;
-pub mod simulate;
-pub mod standardize;
+pub(crate) mod calibrate;
+pub(crate) mod completions;
+pub(crate) mod demo;
+pub(crate) mod evaluate;
+pub(crate) mod info;
+pub(crate) mod simulate;
+pub(crate) mod standardize;

@@ -13,12 +13,12 @@ use crate::failure::{Failure, Outcome};
 
 /// Channels beyond those that every recording has.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Extras {
-    pub phase_samples: bool,
-    pub truth: bool,
+pub(crate) struct Extras {
+    pub(crate) phase_samples: bool,
+    pub(crate) truth: bool,
 }
 
-pub fn run(args: &SimulateArgs) -> Outcome {
+pub(crate) fn run(args: &SimulateArgs) -> Outcome {
     if args.list {
         return list();
     }
@@ -45,7 +45,7 @@ pub fn run(args: &SimulateArgs) -> Outcome {
 }
 
 /// The simulation of a scene, built in or from a file, with its own camera or another.
-pub fn simulation(scene: &str, camera: Option<&str>, seed: u64) -> Outcome<Simulation> {
+pub(crate) fn simulation(scene: &str, camera: Option<&str>, seed: u64) -> Outcome<Simulation> {
     let scene = match scene.ends_with(".toml") {
         true => Scene::from_toml(scene, &read(scene)?)?,
         false => Scene::builtin(scene).map_err(Failure::usage)?,
@@ -72,7 +72,7 @@ fn list() -> Outcome {
 }
 
 /// Renders every frame into a recording at `output`.
-pub fn record(simulation: &Simulation, extras: Extras, output: &Path, overwrite: bool) -> Outcome {
+pub(crate) fn record(simulation: &Simulation, extras: Extras, output: &Path, overwrite: bool) -> Outcome {
     let shape = simulation.shape();
     let mut channels = vec![
         ChannelSpec::image("amplitude", ElementType::F32, shape),

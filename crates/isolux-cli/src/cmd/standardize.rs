@@ -21,27 +21,27 @@ const FLAGS: &str = "flags";
 
 /// What to write besides the two channels, and how.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct WriteOptions {
-    pub keep_input: bool,
-    pub overwrite: bool,
-    pub threads: Option<u16>,
+pub(crate) struct WriteOptions {
+    pub(crate) keep_input: bool,
+    pub(crate) overwrite: bool,
+    pub(crate) threads: Option<u16>,
 }
 
 /// Totals over all frames.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Summary {
-    pub frames: usize,
-    pub pixels: usize,
-    pub valid: usize,
-    pub time_refused: usize,
-    pub time_extrapolated: usize,
-    pub distance_extrapolated: usize,
-    pub specular: usize,
+pub(crate) struct Summary {
+    pub(crate) frames: usize,
+    pub(crate) pixels: usize,
+    pub(crate) valid: usize,
+    pub(crate) time_refused: usize,
+    pub(crate) time_extrapolated: usize,
+    pub(crate) distance_extrapolated: usize,
+    pub(crate) specular: usize,
     /// Frames in which the specular rule found no cutoff, or there was no such step.
-    pub frames_without_cutoff: usize,
+    pub(crate) frames_without_cutoff: usize,
 }
 
-pub fn run(args: &StandardizeArgs) -> Outcome {
+pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
     let standardizer =
@@ -60,7 +60,7 @@ pub fn run(args: &StandardizeArgs) -> Outcome {
 }
 
 /// Standardizes every frame of `recording` into a new recording at `output`.
-pub fn standardize(
+pub(crate) fn standardize(
     recording: &mut dyn Recording,
     standardizer: &Standardizer,
     calibration: Option<&Calibration>,
