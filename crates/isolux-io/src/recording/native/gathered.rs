@@ -149,6 +149,9 @@ impl FortranPositions {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+
+    use super::super::stream::{Packing, Section};
     use super::*;
 
     #[test]
@@ -156,5 +159,31 @@ mod tests {
         let mut positions = FortranPositions::new(&[2, 3]);
         let walk: Vec<_> = (0..6).map(|_| positions.next_position()).collect();
         assert_eq!(walk, [0, 3, 1, 4, 2, 5]);
+    }
+
+    #[test]
+    fn batches_of_any_size_give_the_same_frames() {
+        // Frame n, row h, column w holds 100 n + 10 h + w.
+        let (frames, height, width) = (7u16, 3u16, 2u16);
+        let mut file = tempfile::tempfile().unwrap();
+        for w in 0..width {
+            for h in 0..height {
+                for n in 0..frames {
+                    file.write_all(&(100 * n + 10 * h + w).to_le_bytes()).unwrap();
+                }
+            }
+        }
+        let bytes = 2 * u64::from(frames * height * width);
+        let section = Section { start: 0, stored_bytes: bytes, bytes, packing: Packing::Plain };
+        for batch_bytes in [1, 12, 30, 1 << 20] {
+            let stream = SectionStream::new(file.try_clone().unwrap(), section).unwrap();
+            let mut gathered = GatheredFrames::new(stream, 0, &[7, 3, 2], 2, batch_bytes);
+            for n in [0, 6, 5, 1, 2, 3, 4, 0] {
+                let expected: Vec<_> = [0, 1, 10, 11, 20, 21].map(|at| 100 * n as u16 + at).to_vec();
+                let found: Vec<_> =
+                    gathered.frame(n).unwrap().as_chunks().0.iter().map(|&v| u16::from_le_bytes(v)).collect();
+                assert_eq!(found, expected, "batches of {batch_bytes} bytes");
+            }
+        }
     }
 }

@@ -59,3 +59,25 @@ impl MappedFrames {
             .map_err(RecordingError::io("map", path))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn frames_of_any_size_are_found_across_windows() {
+        let start = 77;
+        for frame_bytes in [1, WINDOW_BYTES / 3, WINDOW_BYTES + 5] {
+            let mut file = tempfile::tempfile().unwrap();
+            file.write_all(&[0xee; 77]).unwrap();
+            (0..5u8).for_each(|frame| file.write_all(&vec![frame; frame_bytes]).unwrap());
+            let mut frames = MappedFrames::new(file, start, frame_bytes, 5);
+            for index in [0, 1, 2, 3, 4, 2, 0, 4] {
+                let frame = frames.frame(index, Path::new("test")).unwrap();
+                assert!(frame.len() == frame_bytes && frame.iter().all(|&byte| usize::from(byte) == index));
+            }
+        }
+    }
+}
