@@ -13,3 +13,8 @@ pub use calibration_file::{CalibrationFileError, read_calibration, write_calibra
 pub use error::RecordingError;
 pub use recording::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter, open};
 pub use whole_file::write_whole;
+
+/// The library example of the README, compiled as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

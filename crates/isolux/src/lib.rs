@@ -1,4 +1,33 @@
-//! Standardizes the amplitude images of time-of-flight cameras.
+//! Standardizes the amplitude images of time-of-flight cameras: one material has one value, whatever the
+//! integration time and the distance, without specular outliers.
+//!
+//! The method is that of Stürmer, Penne and Hornegger, "Standardization of Intensity-Values Acquired by
+//! Time-of-Flight-Cameras" (CVPR Workshops 2008): a lookup table over integration time, a polynomial over
+//! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`].
+//!
+//! [`calibrate`] fits a [`Calibration`] from sweeps; a [`Standardizer`] is planned once and applied to each
+//! [`Frame`]; [`evaluate`] tells how much better it is. This crate knows no files and starts no threads.
+//!
+//! ```
+//! use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer};
+//!
+//! let shape = Shape::new(2, 2);
+//! let mut frame = Frame::new(shape);
+//! frame.amplitude = Plane::from_vec(shape, vec![100.0, 25.0, f32::NAN, 400.0])?;
+//! frame.distance_m = Some(Plane::from_vec(shape, vec![0.75, 1.5, 1.0, 0.375])?);
+//! frame.integration_time_us = IntegrationTime::PerFrame(8200.0);
+//! frame.flag_amplitude(None);
+//!
+//! // Without a calibration, the steps are textbook physics: t_ref / t and (d / d_ref)².
+//! let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+//! let standardizer = Standardizer::plan(&Choice::default(), None, channels)?;
+//! let mut out = Standardized::new(shape);
+//! let summary = standardizer.apply(&frame, &mut out)?;
+//! assert_eq!(summary.valid, 3);
+//! assert_eq!(out.amplitude.get(0, 0), out.amplitude.get(0, 1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 pub mod calibrate;
 pub mod calibration;
 pub mod evaluate;
@@ -13,6 +42,7 @@ pub mod specular;
 pub mod standardize;
 pub mod statistics;
 pub mod terms;
+
 pub use calibration::{Calibration, Reference};
 pub use flags::PixelFlags;
 pub use frame::{Channels, Frame, IntegrationTime};

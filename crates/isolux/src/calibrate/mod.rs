@@ -5,6 +5,7 @@ mod exposure_sweep;
 mod motion;
 mod runs;
 mod warning;
+mod window;
 
 pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};

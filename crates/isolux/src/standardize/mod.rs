@@ -3,10 +3,11 @@
 mod choice;
 mod kernel;
 mod plan;
+mod report;
 mod time;
 
 pub use choice::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
-pub use plan::{AppliedStep, Note, PlanError};
+pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
 use crate::flags::PixelFlags;

@@ -1,0 +1,82 @@
+//! What a plan has to say: the steps, what the user should know of them, and why a choice cannot be carried out.
+
+use std::fmt;
+
+/// One step of the chain, as the output's record tells it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AppliedStep {
+    /// Which effect it takes out: `time`, `distance` or `specular`.
+    pub effect: &'static str,
+    /// Name of the term.
+    pub term: &'static str,
+    /// Its parameters, in words.
+    pub parameters: String,
+}
+
+/// Something that the user should know of the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Note {
+    /// No calibration: textbook physics, not this camera.
+    Textbook,
+    /// `best` goes without a term that the calibration lacks.
+    TermMissing {
+        /// The term.
+        term: &'static str,
+        /// What can be done about it.
+        instead: &'static str,
+    },
+    /// A step is left out because the recording lacks its channel.
+    ChannelMissing {
+        /// The effect that stays in.
+        effect: &'static str,
+        /// The channel.
+        channel: &'static str,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Textbook => f.write_str(
+                "no calibration given: the steps are textbook physics (t_ref/t, d²), not this camera. `isolux \
+                 calibrate` measures its saturation and its own distance law",
+            ),
+            Self::TermMissing { term, instead } => {
+                write!(f, "the calibration has no `{term}`: this step is left out. {instead}")
+            }
+            Self::ChannelMissing { effect, channel } => {
+                write!(f, "the recording has no {channel}: the {effect} step is left out")
+            }
+        }
+    }
+}
+
+/// Why a choice cannot be carried out.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// A term asked for by name is not there.
+    #[error(
+        "`{term}` was asked for, but {holder}: fit it with `isolux calibrate {fit_with} REC`, or choose another step"
+    )]
+    TermMissing {
+        /// The term.
+        term: &'static str,
+        /// Who lacks it.
+        holder: &'static str,
+        /// Option of `isolux calibrate` that fits it.
+        fit_with: &'static str,
+    },
+    /// A step asked for by name needs a channel that the recording lacks.
+    #[error("`{term}` was asked for, but the recording has no {channel}")]
+    ChannelMissing {
+        /// The term.
+        term: &'static str,
+        /// The channel.
+        channel: &'static str,
+    },
+    /// The calibration's own values are impossible.
+    #[error("calibration: {0}")]
+    Calibration(#[from] crate::terms::ParameterError),
+}
