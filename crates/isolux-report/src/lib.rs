@@ -1,0 +1,2 @@
+//! Turns results into self-contained HTML pages.
+pub mod page;
