@@ -1,0 +1,15 @@
+//! One file per experiment; each makes a section of the page.
+
+mod exposure;
+mod parts;
+
+use isolux_report::page::Section;
+
+use crate::error::PaperError;
+use crate::lab::Lab;
+
+/// Makes one section.
+pub type Experiment = fn(&Lab) -> Result<Section, PaperError>;
+
+/// Every experiment, in the order of the page, with what progress calls it.
+pub const ALL: &[(&str, Experiment)] = &[("figures 1 to 3", exposure::section)];
