@@ -34,6 +34,7 @@ pub mod evaluate;
 pub mod flags;
 pub mod frame;
 pub mod geometry;
+pub mod motion;
 mod noise;
 pub mod phase;
 pub mod plane;

@@ -3,6 +3,7 @@
 use isolux::evaluate::{
     Comparison, ComparisonRow, EvaluationFrame, EvaluationSettings, Evaluator, Unavailable, nearest_reference,
 };
+use isolux::motion::MotionWatch;
 use isolux::{Calibration, Channels, Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
 use isolux_io::Recording;
 use serde_json::json;
@@ -55,9 +56,23 @@ pub(crate) fn compare(
         recording.read_frame(index, wanted, &mut frame)?;
         evaluation.take(&frame, Both::set_reference).map_err(|e| Failure::frame(&metadata.path, index, e))?;
     }
+    let (mut motion, mut last_us) = (MotionWatch::default(), None);
     frames::for_each(recording, wanted, "evaluating", |index, frame| {
+        if let IntegrationTime::PerFrame(time_us) = frame.integration_time_us
+            && last_us.replace(time_us) != Some(time_us)
+        {
+            motion.push(time_us, frame);
+        }
         evaluation.take(frame, Both::push).map_err(|error| Failure::frame(&metadata.path, index, error))
     })?;
+    if let Some(movement) = motion.verdict() {
+        console::warn(format!(
+            "the scene did not stand still ({:.0} % of it is elsewhere at {} µs): figures over integration times \
+             also show its movement",
+            100.0 * movement.share,
+            movement.integration_time_us
+        ));
+    }
     Ok(Comparison::new(&evaluation.before, &evaluation.after))
 }
 
@@ -137,16 +152,21 @@ pub(crate) fn describe(comparison: &Comparison) -> String {
 pub(crate) fn describe_rows(comparison: &Comparison, wanted: impl Fn(&str) -> bool) -> String {
     let header = ["figure", "before", "after", "better", "valid before", "valid after"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    let mut missing: Vec<(String, Unavailable)> = Vec::new();
+    let mut missing: Vec<(Unavailable, Vec<String>)> = Vec::new();
     for row in comparison.rows().into_iter().filter(|row| wanted(&row.metric)) {
         match (row.before, row.after) {
-            (Err(reason), _) | (_, Err(reason)) => missing.push((row.metric, reason)),
+            (Err(reason), _) | (_, Err(reason)) => {
+                match missing.iter_mut().find(|(known, _)| *known == reason) {
+                    Some((_, metrics)) => metrics.push(row.metric),
+                    None => missing.push((reason, vec![row.metric])),
+                }
+            }
             (Ok(before), Ok(after)) => rows.push(line(&row, before, after)),
         }
     }
     let mut text = table(&rows);
-    for (metric, reason) in missing {
-        text += &format!("\nnot told by this recording: {metric}: {reason}");
+    for (reason, metrics) in missing {
+        text += &format!("\nnot told by this recording, since {reason}:\n  {}", metrics.join("\n  "));
     }
     text
 }

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::motion::MotionWatch;
 use super::runs::{Place, Runs};
 use super::warning::FitWarning;
 use super::{CalibrateError, CalibrateSettings, noise_floor, single_time};
 use crate::calibration::NoiseFloor;
 use crate::flags::PixelFlags;
 use crate::frame::Frame;
+use crate::motion::MotionWatch;
 use crate::noise;
 use crate::plane::Window;
 use crate::terms::lut::{ExposureSample, Lut};
@@ -153,7 +153,11 @@ impl ExposureSweep {
         if self.runs.decreased {
             warnings.push(FitWarning::TimesNotIncreasing { recording: self.recording.clone() });
         }
-        warnings.extend(self.motion.verdict(&self.recording));
+        warnings.extend(self.motion.verdict().map(|movement| FitWarning::SceneMoved {
+            recording: self.recording.clone(),
+            integration_time_us: movement.integration_time_us,
+            share: movement.share,
+        }));
         warnings.extend(settling(&self.recording, self.times.values(), dead));
         let floor = self.times.iter().next().and_then(|(&bits, sums)| {
             let mean = sums.noise_dn.iter().sum::<f64>() / sums.noise_dn.len() as f64;

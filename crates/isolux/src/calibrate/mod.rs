@@ -2,7 +2,6 @@
 
 mod distance_sweep;
 mod exposure_sweep;
-mod motion;
 mod runs;
 mod warning;
 mod window;

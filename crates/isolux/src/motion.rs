@@ -1,6 +1,5 @@
-//! Did the scene of an exposure sweep stand still? Distances tell, since they hardly depend on the exposure.
+//! Did the scene stand still while the integration time varied? Distances tell, since they hardly depend on it.
 
-use super::warning::FitWarning;
 use crate::frame::Frame;
 use crate::noise;
 use crate::plane::{Shape, Window};
@@ -13,6 +12,8 @@ const SHIFT_M: f64 = 0.05;
 const STANDARD_ERRORS: f64 = 5.0;
 /// Below this share of the block's largest amplitude per time, it is compressed and its distance distrusted.
 const LINEAR_SHARE: f64 = 0.7;
+/// Frames that are compared at most: a recording whose time changes with every frame would fill the memory.
+const MOST_FRAMES: usize = 4096;
 /// The scene moved when more than this share of the comparable blocks did.
 const MOVED_SHARE: f64 = 0.1;
 
@@ -24,15 +25,27 @@ struct Block {
     distance_error_m: f64,
 }
 
-/// Block means of the first frame of each run.
+/// Watches for movement between frames of different integration times.
 #[derive(Clone, Debug, Default)]
-pub(super) struct MotionWatch {
+pub struct MotionWatch {
     runs: Vec<(f64, Vec<Block>)>,
 }
 
+/// A scene that did not stand still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Movement {
+    /// Integration time of the first frame that shows it elsewhere than usual, µs.
+    pub integration_time_us: f64,
+    /// Share of the comparable parts of the image that are elsewhere, 0..=1.
+    pub share: f64,
+}
+
 impl MotionWatch {
-    pub(super) fn push(&mut self, time_us: f64, frame: &Frame) {
-        let Some(distance_m) = &frame.distance_m else { return };
+    /// Takes the first frame of a run of equal integration times (µs). A frame without distance says nothing.
+    pub fn push(&mut self, time_us: f64, frame: &Frame) {
+        let Some(distance_m) = frame.distance_m.as_ref().filter(|_| self.runs.len() < MOST_FRAMES) else {
+            return;
+        };
         let shape = frame.shape();
         let block = |window: Window| {
             let valid = |i: &usize| frame.is_valid(*i) && distance_m.values()[*i] > 0.0;
@@ -53,8 +66,9 @@ impl MotionWatch {
         self.runs.push((time_us, blocks(shape).map(block).collect()));
     }
 
-    /// The first run in which too many blocks are elsewhere than in the median of all runs.
-    pub(super) fn verdict(&self, recording: &str) -> Option<FitWarning> {
+    /// The first frame in which too many parts of the image are elsewhere than in the median of all frames.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Movement> {
         let count = self.runs.first()?.1.len();
         let brightest: Vec<f64> = (0..count)
             .map(|b| self.column(b).map(|block| block.amplitude_per_us).fold(0.0, f64::max))
@@ -76,8 +90,7 @@ impl MotionWatch {
             }
             if moved as f64 > MOVED_SHARE * f64::from(comparable) {
                 let share = moved as f64 / f64::from(comparable);
-                let recording = recording.to_owned();
-                return Some(FitWarning::SceneMoved { recording, integration_time_us: *time_us, share });
+                return Some(Movement { integration_time_us: *time_us, share });
             }
         }
         None
@@ -125,9 +138,9 @@ mod tests {
         for distance in [1.0, 1.0, 1.001, 1.02] {
             watch.push(100.0, &frame(distance));
         }
-        assert_eq!(watch.verdict("wall"), None);
+        assert_eq!(watch.verdict(), None);
         watch.push(100.0, &frame(1.3));
-        assert!(matches!(watch.verdict("wall"), Some(FitWarning::SceneMoved { share, .. }) if share == 1.0));
+        assert!(matches!(watch.verdict(), Some(Movement { share, .. }) if share == 1.0));
     }
 
     #[test]
