@@ -1,0 +1,147 @@
+//! Random frames, chains and calibrations.
+
+use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
+use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
+use isolux::terms::cubic::{Decay, DecayPoint};
+use isolux::terms::lut::ExposureSample;
+use isolux::terms::{Cubic, FitQuality, Lut, Source};
+use isolux::{
+    Calibration, Channels, Choice, Frame, IntegrationTime, PixelFlags, Plane, Reference, Shape, SpecularRule,
+    Standardizer,
+};
+use proptest::prelude::*;
+
+pub const SHAPE: Shape = Shape::new(9, 13);
+pub const PIXELS: usize = SHAPE.pixels();
+pub const CHANNELS: Channels =
+    Channels::AMPLITUDE.union(Channels::DISTANCE).union(Channels::INTEGRATION_TIME);
+
+/// That many cases, and no files of failed ones: a failure prints its smallest input.
+pub fn cases(cases: u32) -> ProptestConfig {
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+}
+
+/// A table for 200 to 20000 µs and a cubic for 0.3 to 3 m.
+pub fn calibration() -> Calibration {
+    let sample = |&t: &f64| ExposureSample {
+        integration_time_us: t,
+        mean_amplitude_dn: t * (-t / 30_000.0).exp(),
+        frame_spread: 0.0,
+    };
+    let times = [200.0, 700.0, 3000.0, 8200.0, 13_000.0, 20_000.0];
+    let point = |i: u32| 0.3 + 0.27 * f64::from(i);
+    let points =
+        (0..11).map(point).map(|d| DecayPoint { distance_m: d, amplitude_dn: 500.0 / (d * d + 0.02) });
+    let decay = Decay { integration_time_us: None, points: points.collect() };
+    let mut calibration = Calibration::new(None, Reference::default());
+    calibration.terms.lut = Some(Lut::fit(&times.iter().map(sample).collect::<Vec<_>>(), 8200.0).unwrap());
+    calibration.terms.cubic = Some(Cubic::fit(&[decay], 0.75).unwrap().0);
+    calibration
+}
+
+pub fn steps(time: TimeStep, distance: DistanceStep, specular: SpecularStep) -> Standardizer {
+    let (time, distance, specular) = (Some(time), Some(distance), Some(specular));
+    let choice = Choice { time, distance, specular, ..Choice::default() };
+    Standardizer::plan(&choice, Some(&calibration()), CHANNELS).unwrap()
+}
+
+pub fn time_steps() -> impl Strategy<Value = TimeStep> {
+    prop::sample::select(vec![TimeStep::Lut, TimeStep::Linear, TimeStep::None])
+}
+
+pub fn distance_steps() -> impl Strategy<Value = DistanceStep> {
+    let steps = [DistanceStep::Cubic, DistanceStep::Square, DistanceStep::Eq5, DistanceStep::None];
+    prop::sample::select(steps.to_vec())
+}
+
+pub fn specular_steps() -> impl Strategy<Value = SpecularStep> {
+    prop::sample::select(vec![
+        SpecularStep::None,
+        SpecularStep::Limit(SpecularRule::Histogram(HistogramRule::default())),
+        SpecularStep::Limit(SpecularRule::Sigma(SigmaRule::default())),
+        SpecularStep::Limit(SpecularRule::Percent(PercentRule::default())),
+        SpecularStep::Limit(SpecularRule::Percent(PercentRule::Quantile(0.9))),
+    ])
+}
+
+/// Amplitudes and distances as a camera may deliver them, some of them no measurement.
+pub fn frames() -> impl Strategy<Value = Frame> {
+    let odd = || prop::sample::select(vec![f32::NAN, 0.0, -1.0, f32::INFINITY]);
+    let amplitudes = prop::collection::vec(prop_oneof![9 => 0.1f32..1e4, 1 => odd()], PIXELS);
+    let distances = prop::collection::vec(prop_oneof![9 => 0.1f32..9.0, 1 => odd()], PIXELS);
+    let per_frame = (50.0..30_000.0f64).prop_map(IntegrationTime::PerFrame);
+    let time = prop_oneof![8 => 50.0f32..30_000.0, 1 => Just(f32::NAN), 1 => Just(0.0)];
+    let per_pixel = prop::collection::vec(time, PIXELS)
+        .prop_map(|times| IntegrationTime::PerPixel(Plane::from_vec(SHAPE, times).unwrap()));
+    let flags = prop::collection::vec(prop_oneof![9 => Just(0u16), 1 => 0u16..64], PIXELS);
+    (amplitudes, distances, prop_oneof![per_frame, per_pixel], flags).prop_map(
+        |(amplitudes, distances, time, flags)| {
+            let mut frame = Frame::new(SHAPE);
+            frame.amplitude = Plane::from_vec(SHAPE, amplitudes).unwrap();
+            frame.distance_m = Some(Plane::from_vec(SHAPE, distances).unwrap());
+            frame.integration_time_us = time;
+            frame.flags.values_mut().iter_mut().zip(flags).for_each(|(flag, bits)| {
+                *flag = PixelFlags::from_bits_retain(bits);
+            });
+            frame.flag_amplitude(None);
+            frame
+        },
+    )
+}
+
+pub fn words() -> impl Strategy<Value = Vec<String>> {
+    prop::collection::vec(".{0,12}", 0..3)
+}
+
+fn quality() -> impl Strategy<Value = FitQuality> {
+    (1usize..99, 0.0..1.0f64, prop::option::of(0.0..1.0f64))
+        .prop_map(|(points, residual, held_out_residual)| FitQuality { points, residual, held_out_residual })
+}
+
+fn sources() -> impl Strategy<Value = Vec<Source>> {
+    let source =
+        (".{0,12}", 0usize..999, 0usize..999).prop_map(|(recording, frames_used, frames_left_out)| Source {
+            recording,
+            frames_used,
+            frames_left_out,
+        });
+    prop::collection::vec(source, 0..3)
+}
+
+pub fn luts() -> impl Strategy<Value = Lut> {
+    let table = prop::collection::vec((1e-3..1e4f64, 1e-4..1e4f64), 2..9);
+    (table, sources(), quality(), words()).prop_map(|(table, fitted_on, fit, warnings)| {
+        let mut time = 0.0;
+        let integration_time_us: Vec<f64> = table
+            .iter()
+            .map(|(step, _)| {
+                time += step;
+                time
+            })
+            .collect();
+        Lut {
+            version: Lut::VERSION,
+            multiplier: table.iter().map(|(_, multiplier)| *multiplier).collect(),
+            valid_integration_time_us: [integration_time_us[0], time],
+            integration_time_us,
+            fitted_on,
+            fit,
+            warnings,
+        }
+    })
+}
+
+pub fn cubics() -> impl Strategy<Value = Cubic> {
+    let numbers = (prop::array::uniform4(1e-6..1e3f64), 1e-3..1e2f64, 1e-3..1e2f64);
+    (numbers, sources(), quality(), words()).prop_map(
+        |((coefficients, min, span), fitted_on, fit, warnings)| {
+            let valid_distance_m = [min, min + span];
+            Cubic { version: Cubic::VERSION, coefficients, valid_distance_m, fitted_on, fit, warnings }
+        },
+    )
+}
+
+/// The values of a plane as they are stored, NaN included.
+pub fn bits(plane: &Plane<f32>) -> Vec<u32> {
+    plane.values().iter().map(|value| value.to_bits()).collect()
+}
