@@ -70,7 +70,7 @@ pub(crate) struct InfoArgs {
 #[command(after_help = "Examples:\n  \
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
     isolux calibrate --exposure-sweep wall --skip-frames 50 -o CAMERA.json\n  \
-    isolux calibrate --distance-sweep board --exclude-time-us 200 --reference-distance-m 1 -o CAMERA.json")]
+    isolux calibrate --distance-sweep board --exclude-time-us 200 -o CAMERA.json")]
 pub(crate) struct CalibrateArgs {
     /// A still scene, integration time varied; may be given several times
     #[arg(long, value_name = "REC")]

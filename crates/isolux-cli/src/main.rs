@@ -5,6 +5,7 @@ mod cmd;
 mod console;
 mod failure;
 mod frames;
+mod output;
 mod picture;
 
 use std::io::Write;

@@ -12,7 +12,7 @@ use isolux::{Calibration, Channels, Frame, Reference};
 use crate::args::CalibrateArgs;
 use crate::console::{self, table};
 use crate::failure::{Failure, Outcome};
-use crate::frames;
+use crate::{frames, output};
 
 pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     if args.exposure_sweep.is_empty() && args.distance_sweep.is_empty() {
@@ -20,6 +20,9 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
             "nothing to fit: give --exposure-sweep REC or --distance-sweep REC, or both",
         ));
     }
+    let inputs = args.exposure_sweep.iter().chain(&args.distance_sweep);
+    output::keep_clear_of(&args.output, inputs.map(PathBuf::as_path))?;
+    output::expect_calibration_or_nothing(&args.output)?;
     let settings = CalibrateSettings {
         reference: Reference {
             integration_time_us: Some(args.reference_time_us),
@@ -60,7 +63,14 @@ pub(crate) fn fit(
         ));
     }
     let camera = camera.or_else(|| cameras.into_iter().next());
-    calibrate::fit(settings, camera, curves, decays).map_err(Failure::data)
+    calibrate::fit(settings, camera, curves, decays).map_err(|error| match error {
+        // Pooled from all distance sweeps, so the error knows none of them.
+        CalibrateError::Cubic(source) => {
+            let names: Vec<_> = distance_sweeps.iter().map(|path| path.display().to_string()).collect();
+            Failure::data(format!("distance sweep `{}`: {source}", names.join("`, `")))
+        }
+        other => Failure::data(other),
+    })
 }
 
 fn exposure_curve(

@@ -118,7 +118,7 @@ fn sample(recording: &mut dyn Recording, metadata: &Metadata) -> Outcome<Sample>
     let scalar_times = metadata.available.contains(Channels::INTEGRATION_TIME) && !sample.per_pixel;
     for index in 0..if scalar_times { metadata.frame_count } else { 0 } {
         recording.read_frame(index, Channels::INTEGRATION_TIME, &mut frame)?;
-        sample.add_time(&frame.integration_time_us);
+        sample.add_time(&frame.integration_time_us, 1);
     }
     Ok(sample)
 }
@@ -127,8 +127,8 @@ impl Sample {
     fn add(&mut self, frame: &Frame, wanted: Channels) {
         self.frames += 1;
         self.pixels += frame.shape().pixels();
-        self.add_time(&frame.integration_time_us);
         let stride = (frame.shape().pixels() * SAMPLED_FRAMES).div_ceil(SAMPLED_VALUES);
+        self.add_time(&frame.integration_time_us, stride);
         if wanted.contains(Channels::AMPLITUDE) {
             let count = |flag| frame.flags.values().iter().filter(|flags| flags.contains(flag)).count();
             self.invalid += count(PixelFlags::INVALID);
@@ -144,7 +144,8 @@ impl Sample {
         }
     }
 
-    fn add_time(&mut self, time: &IntegrationTime) {
+    /// Of a map, every `stride`th pixel, or the next odd number: cameras that mix times alternate them by columns.
+    fn add_time(&mut self, time: &IntegrationTime, stride: usize) {
         let mut insert = |time: f64| {
             if time > 0.0 {
                 self.times.insert(time.to_bits());
@@ -154,7 +155,7 @@ impl Sample {
             IntegrationTime::Unknown => {}
             IntegrationTime::PerFrame(time) => insert(*time),
             IntegrationTime::PerPixel(map) => {
-                map.values().iter().for_each(|&time| insert(f64::from(time)));
+                map.values().iter().step_by(stride | 1).for_each(|&time| insert(f64::from(time)));
                 self.per_pixel = true;
             }
         }

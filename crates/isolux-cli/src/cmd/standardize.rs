@@ -12,12 +12,17 @@ use serde_json::{Map, Value, json};
 use crate::args::StandardizeArgs;
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::frames;
+use crate::{frames, output};
 
 /// Name of the output's main channel.
 const VALUES: &str = "standardized_amplitude";
 /// Name of its flags.
 const FLAGS: &str = "flags";
+
+/// Memory for the frames that are worked on at once, however many threads there are.
+const BATCH_BYTES: usize = 128 << 20;
+/// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch.
+const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4;
 
 /// What to write besides the two channels, and how.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +47,8 @@ pub(crate) struct Summary {
 }
 
 pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
+    let inputs = [Some(args.recording.as_path()), args.calibration.as_deref()];
+    output::keep_clear_of(&args.output, inputs.into_iter().flatten())?;
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
     let standardizer =
@@ -80,13 +87,18 @@ pub(crate) fn standardize(
         .build()
         .map_err(|error| Failure::data(format!("cannot start threads: {error}")))?;
     // Reading and writing go frame by frame and in order; only the arithmetic between is shared out.
-    let mut batch: Vec<Slot> = (0..pool.current_num_threads()).map(|_| Slot::new(&metadata)).collect();
-    let (mut summary, mut bytes) = (Summary::default(), Vec::new());
+    let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept));
+    let mut batch: Vec<Slot> = (0..slots).map(|_| Slot::new(&metadata, kept.len())).collect();
+    let mut summary = Summary::default();
     let progress = console::progress("standardizing", metadata.frame_count);
     for start in (0..metadata.frame_count).step_by(batch.len()) {
         let count = batch.len().min(metadata.frame_count - start);
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
             recording.read_frame(start + offset, standardizer.needed(), &mut slot.frame)?;
+            // Now, not after the batch: a deflated channel that goes back a frame is decoded anew from its start.
+            for (name, bytes) in kept.iter().zip(&mut slot.kept) {
+                recording.read_raw(name, start + offset, bytes)?;
+            }
         }
         pool.install(|| batch[..count].par_iter_mut().for_each(|slot| slot.apply(standardizer)));
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
@@ -94,15 +106,14 @@ pub(crate) fn standardize(
             summary.add(slot.take(&metadata.path, index)?);
             writer.push(VALUES, slot.out.amplitude.values())?;
             writer.push(FLAGS, slot.out.flags.values())?;
-            for name in &kept {
-                recording.read_raw(name, index, &mut bytes)?;
-                writer.push_bytes(name, &bytes)?;
+            for (name, bytes) in kept.iter().zip(&slot.kept) {
+                writer.push_bytes(name, bytes)?;
             }
             progress.inc(1);
         }
     }
     progress.finish_and_clear();
-    if summary.time_refused > 0 && summary.valid == 0 {
+    if summary.time_refused == summary.pixels {
         let message = "every pixel's integration time is above the calibrated range or unknown, a time inside \
                        it expected: record within it, calibrate further, or use --time linear";
         return Err(Failure::data(format!("`{}`: {message}", metadata.path.display())));
@@ -111,16 +122,27 @@ pub(crate) fn standardize(
     Ok(summary)
 }
 
-/// A frame and its result; one for each thread.
+/// Frames that fit into [`BATCH_BYTES`], at least one.
+fn affordable_slots(metadata: &Metadata, kept: &[String]) -> usize {
+    let kept = kept.iter().filter_map(|name| metadata.channel(name));
+    let kept_bytes: usize = kept.map(isolux_io::recording::ChannelInfo::frame_bytes).sum();
+    let slot_bytes = metadata.shape.pixels() * SLOT_BYTES_PER_PIXEL + kept_bytes;
+    (BATCH_BYTES / slot_bytes).max(1)
+}
+
+/// A frame and its result; one for each thread, as far as memory allows.
 struct Slot {
     frame: Frame,
     out: Standardized,
+    /// The frame of each kept channel, verbatim.
+    kept: Vec<Vec<u8>>,
     outcome: Option<Result<FrameSummary, isolux::standardize::StandardizeError>>,
 }
 
 impl Slot {
-    fn new(metadata: &Metadata) -> Self {
-        Self { frame: Frame::new(metadata.shape), out: Standardized::new(metadata.shape), outcome: None }
+    fn new(metadata: &Metadata, kept: usize) -> Self {
+        let (frame, out) = (Frame::new(metadata.shape), Standardized::new(metadata.shape));
+        Self { frame, out, kept: vec![Vec::new(); kept], outcome: None }
     }
 
     fn apply(&mut self, standardizer: &Standardizer) {
