@@ -1,61 +1,83 @@
-//! Exact order statistics of positive f32 values in two counting passes, without sorting or allocating.
+//! Exact order statistics of positive f32 values by counting, without sorting the image or allocating for each.
 
-/// Working memory for [`PositiveQuantiles`], kept between images.
+/// Positive floats order like their bits. The upper 16 (the sign is 0) choose a bin of under 1 % width, so that few
+/// values share the bin of a quantile and only these need to be sorted out.
+const BINS: usize = 1 << 15;
+
+/// Working memory for order statistics, kept between images.
 #[derive(Clone, Debug)]
 pub(crate) struct PositiveQuantiles {
-    /// How many values share their upper 16 bits. Positive floats order like their bits, and have no sign bit.
-    upper: Vec<u32>,
-    lower: Vec<u32>,
-    count: usize,
+    bins: Vec<u32>,
+    /// Bits of the values that share the bin of a wanted quantile.
+    candidates: Vec<u32>,
 }
 
 impl PositiveQuantiles {
     pub(crate) fn new() -> Self {
-        Self { upper: vec![0; 1 << 15], lower: vec![0; 1 << 16], count: 0 }
+        Self { bins: vec![0; BINS], candidates: Vec::new() }
     }
 
-    /// Counts the positive finite values of `values`; all others are passed over.
-    pub(crate) fn count(&mut self, values: &[f32]) -> usize {
-        self.upper.fill(0);
-        self.count = 0;
-        for value in positive(values) {
-            self.upper[(value.to_bits() >> 16) as usize] += 1;
-            self.count += 1;
-        }
-        self.count
+    /// For each fraction (clamped to 0..=1) the value at rank `floor(fraction · (count − 1))` of the positive finite
+    /// values, and their count; all other values are passed over. `None` when there are none.
+    pub(crate) fn at<const N: usize>(
+        &mut self,
+        values: &[f32],
+        fractions: [f64; N],
+    ) -> Option<([f32; N], usize)> {
+        let count = self.count(values);
+        let last = count.checked_sub(1)?;
+        let places = fractions.map(|fraction| self.find((fraction.clamp(0.0, 1.0) * last as f64) as usize));
+        self.collect(values, places.map(|(bin, _)| bin));
+        let found = places.map(|(bin, rank)| self.select(bin, rank));
+        Some((found, count))
     }
 
-    /// The value at rank `floor(fraction · (count − 1))` of the values last counted, which must be passed again
-    /// unchanged. `None` when there were none. `fraction` is clamped to 0..=1.
-    pub(crate) fn at(&mut self, values: &[f32], fraction: f64) -> Option<f32> {
-        let last = self.count.checked_sub(1)?;
-        let rank = (fraction.clamp(0.0, 1.0) * last as f64) as usize;
-        let (upper, rank) = find(&self.upper, rank)?;
-        self.lower.fill(0);
-        for value in positive(values) {
-            let bits = value.to_bits();
-            if (bits >> 16) as usize == upper {
-                self.lower[(bits & 0xffff) as usize] += 1;
+    fn count(&mut self, values: &[f32]) -> usize {
+        self.bins.fill(0);
+        let mut count = 0;
+        for &value in values {
+            if is_positive(value) {
+                self.bins[(value.to_bits() >> 16) as usize] += 1;
+                count += 1;
             }
         }
-        let (lower, _) = find(&self.lower, rank)?;
-        Some(f32::from_bits(((upper as u32) << 16) | lower as u32))
+        count
     }
-}
 
-fn positive(values: &[f32]) -> impl Iterator<Item = f32> {
-    values.iter().copied().filter(|value| *value > 0.0 && value.is_finite())
-}
+    /// The bin that holds the value of this rank, and its rank within the bin.
+    fn find(&self, mut rank: usize) -> (u32, usize) {
+        for (bin, &count) in self.bins.iter().enumerate() {
+            match rank.checked_sub(count as usize) {
+                Some(rest) => rank = rest,
+                None => return (bin as u32, rank),
+            }
+        }
+        (0, 0)
+    }
 
-/// The bin that holds the value of this rank, and its rank within the bin.
-fn find(counts: &[u32], mut rank: usize) -> Option<(usize, usize)> {
-    for (bin, &count) in counts.iter().enumerate() {
-        match rank.checked_sub(count as usize) {
-            Some(rest) => rank = rest,
-            None => return Some((bin, rank)),
+    fn collect<const N: usize>(&mut self, values: &[f32], bins: [u32; N]) {
+        self.candidates.clear();
+        for &value in values {
+            let bits = value.to_bits();
+            // Only a positive finite value has the upper bits of one, but for those just below infinity.
+            if bins.contains(&(bits >> 16)) && is_positive(value) {
+                self.candidates.push(bits);
+            }
         }
     }
-    None
+
+    fn select(&mut self, bin: u32, rank: usize) -> f32 {
+        // Values of lower bins come first, whichever bins were collected.
+        let below = self.candidates.iter().filter(|bits| **bits >> 16 < bin).count();
+        match (below + rank) < self.candidates.len() {
+            true => f32::from_bits(*self.candidates.select_nth_unstable(below + rank).1),
+            false => f32::NAN,
+        }
+    }
+}
+
+fn is_positive(value: f32) -> bool {
+    value > 0.0 && value < f32::INFINITY
 }
 
 #[cfg(test)]
@@ -65,13 +87,16 @@ mod tests {
 
     proptest! {
         #[test]
-        fn equals_sorting(values in prop::collection::vec(prop::num::f32::ANY, 0..200), fraction in 0.0..=1.0f64) {
-            let mut sorted: Vec<f32> = positive(&values).collect();
+        fn equals_sorting(
+            values in prop::collection::vec(prop_oneof![prop::num::f32::ANY, 1f32..1.02], 0..200),
+            first in 0.0..=1.0f64,
+            second in 0.0..=1.0f64,
+        ) {
+            let mut sorted: Vec<f32> = values.iter().copied().filter(|value| is_positive(*value)).collect();
             sorted.sort_by(f32::total_cmp);
-            let mut quantiles = PositiveQuantiles::new();
-            prop_assert_eq!(quantiles.count(&values), sorted.len());
-            let rank = (fraction * sorted.len().saturating_sub(1) as f64) as usize;
-            prop_assert_eq!(quantiles.at(&values, fraction), sorted.get(rank).copied());
+            let at = |fraction: f64| sorted[(fraction * (sorted.len() - 1) as f64) as usize];
+            let expected = (!sorted.is_empty()).then(|| ([at(first), at(second)], sorted.len()));
+            prop_assert_eq!(PositiveQuantiles::new().at(&values, [first, second]), expected);
         }
     }
 }

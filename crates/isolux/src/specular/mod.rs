@@ -46,42 +46,31 @@ impl SpecularRule {
     }
 
     /// The value above which pixels count as specular; `None` when the image has none that qualifies.
-    pub(crate) fn cutoff(&self, values: &[f32], memory: &mut SpecularMemory) -> Option<f32> {
+    pub(crate) fn cutoff(&self, values: &[f32], quantiles: &mut PositiveQuantiles) -> Option<f32> {
         match self {
-            Self::Histogram(rule) => rule.cutoff(values, memory),
+            Self::Histogram(rule) => rule.cutoff(values, quantiles),
             Self::Sigma(rule) => rule.cutoff(values),
-            Self::Percent(rule) => rule.cutoff(values, &mut memory.quantiles),
+            Self::Percent(rule) => rule.cutoff(values, quantiles),
         }
     }
 }
 
-/// Working memory of the rules, kept between images.
-#[derive(Clone, Debug)]
-pub(crate) struct SpecularMemory {
-    quantiles: PositiveQuantiles,
-    bins: [u32; histogram::BINS],
-}
-
-impl SpecularMemory {
-    pub(crate) fn new() -> Self {
-        Self { quantiles: PositiveQuantiles::new(), bins: [0; histogram::BINS] }
-    }
-}
-
-/// Sets values above `cutoff` to it and flags them; returns how many.
-pub(crate) fn limit(values: &mut Plane<f32>, flags: &mut Plane<PixelFlags>, cutoff: f32) -> usize {
-    let mut limited = 0;
+/// Sets values above `cutoff` to it and flags them.
+pub(crate) fn limit(values: &mut Plane<f32>, flags: &mut Plane<PixelFlags>, cutoff: f32) {
     for (value, flags) in values.values_mut().iter_mut().zip(flags.values_mut()) {
-        if *value > cutoff {
-            *value = cutoff;
-            flags.insert(PixelFlags::SPECULAR);
-            limited += 1;
-        }
+        let above = *value > cutoff;
+        *value = if above { cutoff } else { *value };
+        *flags |= PixelFlags::from_bits_retain(u16::from(above) * PixelFlags::SPECULAR.bits());
     }
-    limited
 }
 
-/// Largest positive finite value, or 0.
+/// Largest positive finite value, or 0. In lanes, so that the loop vectorizes.
 fn maximum(values: &[f32]) -> f32 {
-    values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max)
+    let mut lanes = [0.0f32; 16];
+    for chunk in values.chunks(lanes.len()) {
+        for (largest, &value) in lanes.iter_mut().zip(chunk) {
+            *largest = if value > *largest && value < f32::INFINITY { value } else { *largest };
+        }
+    }
+    lanes.into_iter().fold(0.0, f32::max)
 }

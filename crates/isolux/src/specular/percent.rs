@@ -32,10 +32,7 @@ impl PercentRule {
                 let maximum = super::maximum(values);
                 (maximum > 0.0).then_some((fraction * f64::from(maximum)) as f32)
             }
-            Self::Quantile(fraction) => {
-                quantiles.count(values);
-                quantiles.at(values, fraction)
-            }
+            Self::Quantile(fraction) => quantiles.at(values, [fraction]).map(|([value], _)| value),
         }
     }
 }

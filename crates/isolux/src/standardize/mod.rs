@@ -13,7 +13,8 @@ use crate::calibration::Calibration;
 use crate::flags::PixelFlags;
 use crate::frame::{Channels, Frame};
 use crate::plane::{Plane, Shape, ShapeError};
-use crate::specular::{self, SpecularMemory};
+use crate::quantile::PositiveQuantiles;
+use crate::specular;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
 use plan::Plan;
@@ -32,7 +33,7 @@ pub struct Standardized {
     pub amplitude: Plane<f32>,
     /// The frame's flags, with those of the correction.
     pub flags: Plane<PixelFlags>,
-    specular: SpecularMemory,
+    quantiles: PositiveQuantiles,
 }
 
 /// What happened to one frame.
@@ -79,7 +80,7 @@ impl Standardized {
         Self {
             amplitude: Plane::filled(shape, f32::NAN),
             flags: Plane::filled(shape, PixelFlags::empty()),
-            specular: SpecularMemory::new(),
+            quantiles: PositiveQuantiles::new(),
         }
     }
 
@@ -138,7 +139,7 @@ impl Standardizer {
             time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
         self.scale(frame, time_gain, out)?;
         let specular_cutoff =
-            self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.specular));
+            self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.quantiles));
         if let Some(cutoff) = specular_cutoff {
             specular::limit(&mut out.amplitude, &mut out.flags, cutoff);
         }
