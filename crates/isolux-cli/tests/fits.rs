@@ -60,20 +60,25 @@ fn the_table_ends_at_the_peak(lut: &Lut, truth: &[ExpectedMean]) {
     assert!(end < truth[truth.len() - 1].integration_time_us, "the sweep goes on beyond the peak");
 }
 
-/// 0.2 % would do. But the same mean in f64 differs by the order of summation alone: fewer than 10⁵ terms of one
-/// sign, each rounded by ε/2 of a sum, twice over.
+/// What was promised. It is needed where the camera delivers codes: the library averages the means of frames, in
+/// which unlike numbers of pixels carry the code, the naive version all pixels.
+const PROMISED: f64 = 2e-3;
+/// The same mean in f64 differs by the order of summation alone: fewer than 10⁵ terms of one sign, each rounded by
+/// ε/2 of a sum, twice over.
 const SUMMATION: f64 = 1e5 * f64::EPSILON;
 
 #[test]
 fn multipliers_equal_a_naive_implementation() {
     let mut kinect = cropped("kinect2-like", 60, 80);
-    kinect.dead_pixel_fraction = 0.01;
+    // Dead pixels that count, and a field so wide that its middle carries the code long before its corners.
+    (kinect.dead_pixel_fraction, kinect.intrinsics.fx, kinect.intrinsics.fy) = (0.01, 60.0, 60.0);
     for model in [cropped("sr3100", 72, 88), cropped("o3d-like", 66, 88), kinect] {
         let name = model.name.clone();
+        let tolerance = if model.saturated_amplitude.is_some() { PROMISED } else { SUMMATION };
         let mut scene = settling_wall();
         if model.saturated_amplitude.is_some() {
-            // Beyond, every pixel of this camera carries its code.
-            scene.runs[0].integration_times_us.retain(|time| *time <= 28000.0);
+            // Beyond, nearly every pixel of this camera carries its code.
+            scene.runs[0].integration_times_us.retain(|time| *time <= 38000.0);
         }
         let simulation = Simulation::new(model, scene, 3).unwrap();
         let frames = render(&simulation);
@@ -89,7 +94,7 @@ fn multipliers_equal_a_naive_implementation() {
             for time in [time, (1.3 * time).min(times[times.len() - 1])] {
                 let LutAnswer::Inside(found) = lut.at(time) else { panic!("{name} {time}") };
                 let expected = naive_fit::log_log(&naive, time);
-                assert!((found / expected - 1.0).abs() < SUMMATION, "{name} {time}: {found} {expected}");
+                assert!((found / expected - 1.0).abs() < tolerance, "{name} {time}: {found} {expected}");
             }
         }
     }
@@ -201,7 +206,7 @@ fn the_cubic_is_the_cameras_true_decay_as_well_as_a_cubic_can_be_within_noise() 
         .collect();
     let [min, max] = cubic.valid_distance_m;
     // The ends are the outermost positions, as they were measured: a board at z is z/cos α away.
-    assert!((min / 0.35 - 1.0).abs() < 2e-3 && (max / 3.0 - 1.0).abs() < 2e-3, "{min} {max}");
+    assert!((min / 0.35 - 1.0).abs() < 5e-3 && (max / 3.0 - 1.0).abs() < 5e-3, "{min} {max}");
     for step in 0..=100 {
         let distance = min + (max - min) * f64::from(step) / 100.0;
         let true_multiplier = 1.0 / model.distance_response(distance, REFERENCE_M);
