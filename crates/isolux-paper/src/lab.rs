@@ -1,11 +1,12 @@
 //! What the experiments share: the sweeps with the paper's protocol, and the calibration fitted on them.
 
 use isolux::calibrate::{self, CalibrateSettings, DistanceSweep, ExposureSweep, FitReport};
-use isolux::{Calibration, IntegrationTime, Window};
+use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
+use isolux::{Calibration, Channels, Choice, Frame, IntegrationTime, Standardized, Standardizer, Window};
 use isolux_camera::{CameraModel, Simulation};
 
 use crate::error::PaperError;
-use crate::measure::{for_each, mean_amplitude, mean_distance_m, simulation};
+use crate::measure::{for_each, mean_amplitude, mean_distance_m, regions, simulation};
 
 /// Side of the paper's measurement windows, pixels.
 pub(crate) const WINDOW_PX: usize = 20;
@@ -80,6 +81,36 @@ impl Lab {
             calibrate::fit(&settings, name, vec![exposure.finish()], vec![distance.finish()])?;
         Ok(Self { seed, camera, wall, board, calibration, report })
     }
+
+    /// Plans these steps with the calibration.
+    pub(crate) fn plan(
+        &self,
+        time: TimeStep,
+        distance: DistanceStep,
+        specular: SpecularStep,
+    ) -> Result<Standardizer, PaperError> {
+        let choice = Choice {
+            time: Some(time),
+            distance: Some(distance),
+            specular: Some(specular),
+            ..Choice::default()
+        };
+        let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+        Ok(Standardizer::plan(&choice, Some(&self.calibration), channels)?)
+    }
+
+    /// Applies these steps to one frame.
+    pub(crate) fn apply(
+        &self,
+        frame: &Frame,
+        time: TimeStep,
+        distance: DistanceStep,
+        specular: SpecularStep,
+    ) -> Result<Standardized, PaperError> {
+        let mut out = Standardized::new(frame.shape());
+        self.plan(time, distance, specular)?.apply(frame, &mut out)?;
+        Ok(out)
+    }
 }
 
 type Push<'a> = &'a mut dyn FnMut(&isolux::Frame) -> Result<(), calibrate::CalibrateError>;
@@ -89,19 +120,7 @@ impl WallSweep {
         simulated: &Simulation,
         mut push: impl FnMut(&isolux::Frame) -> Result<(), calibrate::CalibrateError>,
     ) -> Result<Self, PaperError> {
-        let shape = simulated.shape();
-        let at = |row: usize, column: usize| Window {
-            top: row * (shape.height - WINDOW_PX) / 4,
-            left: column * (shape.width - WINDOW_PX) / 4,
-            height: WINDOW_PX,
-            width: WINDOW_PX,
-        };
-        let regions = [
-            ("whole image", Window::whole(shape)),
-            ("centre", at(2, 2)),
-            ("half way out", at(1, 1)),
-            ("corner", at(0, 0)),
-        ];
+        let regions = regions(simulated.shape());
         let mut sweep = Self {
             times_us: Vec::new(),
             regions: regions.iter().map(|(name, _)| RegionMeans { name, means_dn: Vec::new() }).collect(),

@@ -9,6 +9,7 @@ mod error;
 pub mod figures;
 mod lab;
 mod measure;
+mod structure;
 
 use isolux_report::page::Page;
 

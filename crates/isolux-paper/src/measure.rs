@@ -1,15 +1,47 @@
 //! Rendering scenes frame by frame, and means over windows of them.
 
-use isolux::{Frame, Window};
+use isolux::{Frame, Shape, Window};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use crate::error::PaperError;
+use crate::lab::WINDOW_PX;
 
 /// A built-in scene before its own camera.
 pub(crate) fn simulation(scene: &str, seed: u64) -> Result<Simulation, PaperError> {
-    let scene = Scene::builtin(scene)?;
+    simulation_of(Scene::builtin(scene)?, seed)
+}
+
+/// A scene, built-in or changed, before its own camera.
+pub(crate) fn simulation_of(scene: Scene, seed: u64) -> Result<Simulation, PaperError> {
     let model = CameraModel::preset(&scene.camera)?;
     Ok(Simulation::new(model, scene, seed)?)
+}
+
+/// The first frame that is recorded at this integration time; `scene` is the name for the error.
+pub(crate) fn frame_at(
+    simulation: &Simulation,
+    scene: &'static str,
+    integration_time_us: f64,
+) -> Result<SimulatedFrame, PaperError> {
+    let planned = simulation.frames().iter();
+    let index =
+        planned.map(|frame| frame.integration_time_us).position(|time_us| time_us == integration_time_us);
+    let index =
+        index.ok_or(PaperError::Scene { scene, missing: "a frame at the pictured integration time" })?;
+    let mut out = SimulatedFrame::new(simulation.shape());
+    simulation.render_frame(index, &mut out)?;
+    Ok(out)
+}
+
+/// The regions whose means are drawn: the whole image, then windows of 20×20 from the centre outwards.
+pub(crate) fn regions(shape: Shape) -> [(&'static str, Window); 4] {
+    let at = |quarters: usize| Window {
+        top: quarters * shape.height.saturating_sub(WINDOW_PX) / 4,
+        left: quarters * shape.width.saturating_sub(WINDOW_PX) / 4,
+        height: WINDOW_PX.min(shape.height),
+        width: WINDOW_PX.min(shape.width),
+    };
+    [("whole image", Window::whole(shape)), ("centre", at(2)), ("half way out", at(1)), ("corner", at(0))]
 }
 
 /// Renders every frame on all threads and visits them in their order.

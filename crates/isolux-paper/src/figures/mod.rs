@@ -1,7 +1,10 @@
 //! One file per experiment; each makes a section of the page.
 
 mod exposure;
+mod objects;
 mod parts;
+mod scenes;
+mod specular;
 
 use isolux_report::page::Section;
 
@@ -12,4 +15,9 @@ use crate::lab::Lab;
 pub type Experiment = fn(&Lab) -> Result<Section, PaperError>;
 
 /// Every experiment, in the order of the page, with what progress calls it.
-pub const ALL: &[(&str, Experiment)] = &[("figures 1 to 3", exposure::section)];
+pub const ALL: &[(&str, Experiment)] = &[
+    ("figures 1 to 3", exposure::section),
+    ("figures 6 and 13", specular::section),
+    ("figures 7 to 9", scenes::section),
+    ("figures 11 and 12", objects::section),
+];

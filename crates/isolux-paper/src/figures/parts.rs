@@ -1,6 +1,6 @@
 //! Small pieces that several sections use.
 
-use isolux_report::page::{Axis, Scale, Verdict};
+use isolux_report::page::{Axis, Cell, Scale, Verdict};
 
 /// An axis that follows its data.
 pub(super) fn axis(label: &str, scale: Scale) -> Axis {
@@ -10,4 +10,14 @@ pub(super) fn axis(label: &str, scale: Scale) -> Axis {
 /// Holds, or fails because of `otherwise`.
 pub(super) fn verdict(holds: bool, otherwise: &str) -> Verdict {
     if holds { Verdict::Holds } else { Verdict::Fails(otherwise.to_owned()) }
+}
+
+/// A number in a table.
+pub(super) fn number(value: f64, decimals: usize) -> Cell {
+    Cell::Number { value, decimals }
+}
+
+/// Words in a table.
+pub(super) fn text(words: &str) -> Cell {
+    Cell::Text(words.to_owned())
 }
