@@ -12,8 +12,11 @@ use crate::terms::cubic::{Decay, DecayPoint};
 
 /// Decays whose median signal-to-noise ratio is lower are left out: their distances are not reliable.
 const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
-/// Consecutive frames within this distance of the first belong to one position.
+/// Consecutive frames within this distance of the first belong to one position, or within
+/// [`POSITION_STANDARD_ERRORS`] where the distance is noisy.
 const POSITION_TOLERANCE_M: f64 = 0.005;
+/// Two means of one position differ by more once in 15 000 times.
+const POSITION_STANDARD_ERRORS: f64 = 4.0;
 /// The window's mean distance may scatter by this many standard errors before the target counts as moving.
 const STANDARD_ERRORS: f64 = 8.0;
 /// A decay of which fewer frames than this share have a reliable distance is left out as a whole, like the
@@ -127,9 +130,7 @@ impl DistanceSweep {
         let same_time = self.last_time.replace(time) == Some(time);
         let positions = &mut self.times.entry(time).or_default().reliable;
         match positions.last_mut() {
-            Some(last) if same_time && last.holds(measurement.distance_m) => {
-                last.measurements.push(measurement)
-            }
+            Some(last) if same_time && last.holds(&measurement) => last.measurements.push(measurement),
             _ => positions.push(Position { first_frame: number, measurements: vec![measurement] }),
         }
     }
@@ -167,10 +168,11 @@ impl DistanceSweep {
 }
 
 impl Position {
-    fn holds(&self, distance_m: f64) -> bool {
-        self.measurements
-            .first()
-            .is_some_and(|first| (first.distance_m - distance_m).abs() <= POSITION_TOLERANCE_M)
+    fn holds(&self, next: &Measurement) -> bool {
+        self.measurements.first().is_some_and(|first| {
+            let noise_m = POSITION_STANDARD_ERRORS * first.distance_error_m.hypot(next.distance_error_m);
+            (first.distance_m - next.distance_m).abs() <= noise_m.max(POSITION_TOLERANCE_M)
+        })
     }
 
     fn mean(&self, value: impl Fn(&Measurement) -> f64) -> f64 {

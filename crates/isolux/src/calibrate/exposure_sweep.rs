@@ -146,6 +146,14 @@ impl ExposureSweep {
         let mut warnings = Vec::new();
         let (mut samples, mut saturated_share) = (Vec::new(), Vec::new());
         for (&bits, sums) in &self.times {
+            if sums.frames.iter().any(|frame| frame.count(dead) == 0) {
+                let integration_time_us = f64::from_bits(bits);
+                warnings.push(FitWarning::NoMeasurement {
+                    recording: self.recording.clone(),
+                    integration_time_us,
+                });
+                continue;
+            }
             samples.push(sums.sample(f64::from_bits(bits), dead));
             let saturated = sums.frames.iter().map(|f| f.saturated as f64).sum::<f64>();
             saturated_share.push(saturated / pixels / sums.frames.len() as f64);
@@ -179,8 +187,13 @@ impl TimeSums {
 }
 
 impl FrameSums {
+    /// Pixels that enter the mean.
+    fn count(&self, dead: usize) -> usize {
+        self.positive + self.zero.saturating_sub(dead)
+    }
+
     fn mean(&self, dead: usize) -> f64 {
-        self.sum / (self.positive + self.zero.saturating_sub(dead)) as f64
+        self.sum / self.count(dead) as f64
     }
 }
 
@@ -280,6 +293,14 @@ mod tests {
         assert_eq!(curve.samples.len(), 1);
         assert_eq!(curve.samples[0].mean_amplitude_dn, 2.5);
         assert_eq!((curve.source.frames_used, curve.source.frames_left_out), (2, 3));
+    }
+
+    #[test]
+    fn a_time_at_which_every_pixel_is_saturated_is_left_out() {
+        let frames = [(100.0, 9.0), (200.0, 18.0), (300.0, 1000.0)].map(|(t, v)| frame(t, &[v, v]));
+        let curve = curve(&CalibrateSettings::default(), &frames);
+        assert_eq!(curve.samples.len(), 2);
+        assert!(matches!(curve.warnings[..], [FitWarning::NoMeasurement { integration_time_us: 300.0, .. }]));
     }
 
     #[test]

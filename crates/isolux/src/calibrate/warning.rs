@@ -29,6 +29,13 @@ pub enum FitWarning {
         /// Share of the image that moved.
         share: f64,
     },
+    /// An integration time at which a frame has no pixel with a value.
+    NoMeasurement {
+        /// The recording.
+        recording: String,
+        /// The time, µs.
+        integration_time_us: f64,
+    },
     /// Few integration times.
     TooFewTimes {
         /// The recording.
@@ -141,6 +148,11 @@ impl fmt::Display for FitWarning {
                 "{recording}: at {integration_time_us} µs, {:.0} % of the image is at another distance than \
                  usual: an exposure sweep needs a still scene",
                 100.0 * share
+            ),
+            Self::NoMeasurement { recording, integration_time_us } => write!(
+                f,
+                "{recording}: {integration_time_us} µs left out, a frame there has no valid pixel (dark, or all \
+                 saturated)"
             ),
             Self::TooFewTimes { recording, found } => {
                 write!(
