@@ -10,7 +10,9 @@ pub(crate) fn put_pictures(out: &mut String, pictures: &[Picture]) -> Result<(),
     if pictures.is_empty() {
         return Ok(());
     }
-    out.push_str("<div class=\"pictures\">\n");
+    // Rows that come out even: twos for two and four, threes for the rest.
+    let row = if matches!(pictures.len(), 1 | 2 | 4) { "twos" } else { "threes" };
+    put!(out, "<div class=\"pictures {row}\">\n");
     for picture in pictures {
         put_picture(out, picture)?;
     }

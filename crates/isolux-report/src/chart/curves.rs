@@ -73,7 +73,7 @@ fn close(open: &mut Vec<Place>, lines: &mut Vec<Vec<Place>>) {
 }
 
 /// Liang and Barsky, "A new concept and method for line clipping" (ACM TOG 1984), on the unit square.
-fn cut_segment(from: Place, to: Place) -> Option<(Place, Place)> {
+pub(super) fn cut_segment(from: Place, to: Place) -> Option<(Place, Place)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut enter, mut leave) = (0.0f64, 1.0f64);
     for (direction, room) in [(-dx, from.0), (dx, 1.0 - from.0), (-dy, from.1), (dy, 1.0 - from.1)] {

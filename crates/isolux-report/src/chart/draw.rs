@@ -26,18 +26,18 @@ type Shared = Rc<RefCell<Canvas>>;
 type Drawn<T = ()> = Result<T, String>;
 
 /// The elements inside the `<svg>` of a chart.
-pub(super) fn draw(chart: &Chart, layout: &Layout, curves: &[Curve]) -> Drawn<String> {
+pub(super) fn draw(chart: &Chart, layout: &Layout) -> Drawn<String> {
     let shared = Shared::default();
     let size = (units(layout.width) as u32, units(layout.height) as u32);
     let area = StyledSvg::new(size, Rc::clone(&shared)).into_drawing_area();
     let mut frame = draw_axes(&area, layout)?;
     draw_labels(&area, layout)?;
     draw_mark_lines(&mut frame, chart, layout)?;
-    for (index, curve) in curves.iter().enumerate() {
+    for (index, curve) in layout.curves.iter().enumerate() {
         draw_curve(&mut frame, &shared, chart, index, curve)?;
     }
     draw_mark_labels(&area, layout)?;
-    if curves.iter().all(|curve| curve.lines.is_empty() && curve.markers.is_empty()) {
+    if layout.curves.iter().all(|curve| curve.lines.is_empty() && curve.markers.is_empty()) {
         let middle = (layout.left + layout.plot_width / 2.0, layout.top + layout.plot_height / 2.0);
         draw_text(&area, "no values to draw", Role::Label, middle, HPos::Center)?;
     }
@@ -98,7 +98,7 @@ fn draw_text(area: &Area, text: &str, role: Role, (x, y): (f64, f64), side: HPos
 
 fn draw_labels(area: &Area, layout: &Layout) -> Drawn {
     for (line, y) in &layout.y_label {
-        draw_text(area, line, Role::Label, (2.0, *y), HPos::Left)?;
+        draw_text(area, line, Role::Label, (0.0, *y), HPos::Left)?;
     }
     for (line, y) in &layout.x_label {
         draw_text(area, line, Role::Label, (layout.left + layout.plot_width, *y), HPos::Right)?;

@@ -1,8 +1,7 @@
 //! Where the parts of a chart are, for one width of the page.
 
-use plotters::style::text_anchor::HPos;
-
-use super::curves::inside;
+use super::curves::{self, Curve};
+use super::marks::{self, Frame, MarkLabel};
 use super::scale::Extent;
 use super::text::{width, wrap};
 use super::ticks::Ticks;
@@ -11,7 +10,7 @@ use crate::page::{Chart, MarkAxis};
 /// Size of letters, pixels.
 pub(super) const LETTERS: f64 = 13.0;
 /// Height of a line of text, pixels.
-const LINE: f64 = 17.0;
+pub(super) const LINE: f64 = 17.0;
 /// From an axis to the labels of its ticks, pixels.
 const TICK: f64 = 9.0;
 
@@ -54,14 +53,6 @@ impl Format {
     }
 }
 
-/// A text beside a mark.
-#[derive(Clone)]
-pub(super) struct MarkLabel {
-    pub(super) text: String,
-    pub(super) at: (f64, f64),
-    pub(super) side: HPos,
-}
-
 /// All sizes and places of a chart, in pixels.
 pub(super) struct Layout {
     pub(super) width: f64,
@@ -78,6 +69,8 @@ pub(super) struct Layout {
     pub(super) x_label: Vec<(String, f64)>,
     pub(super) y_label: Vec<(String, f64)>,
     pub(super) mark_labels: Vec<MarkLabel>,
+    /// One for each series.
+    pub(super) curves: Vec<Curve>,
 }
 
 impl Layout {
@@ -112,9 +105,12 @@ impl Layout {
                 .map(|(row, text)| (text, LINE * (row as f64 + 0.5)))
                 .collect(),
             mark_labels: Vec::new(),
+            curves: Vec::new(),
         };
-        layout.label_x_marks(chart);
-        layout.label_y_marks(chart);
+        let curve =
+            |index: usize| curves::curve(&chart.series[index], &layout.x, &layout.y, turn(chart, index));
+        layout.curves = (0..chart.series.len()).map(curve).collect();
+        layout.label_marks(chart);
         let below = layout.top + plot_height + TICK + LINE;
         layout.height = below + LINE * x_lines.len() as f64 + 6.0;
         let x_label = x_lines.into_iter().enumerate();
@@ -122,52 +118,22 @@ impl Layout {
         layout
     }
 
-    /// Labels of vertical lines, in rows above the frame, so that they cover neither data nor each other.
-    fn label_x_marks(&mut self, chart: &Chart) {
-        let above = self.top;
-        let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
-        for mark in chart.marks.iter().filter(|mark| mark.axis == MarkAxis::X) {
-            let Some(place) = self.x.place(mark.at).filter(|&x| inside(&(x, 0.0))) else { continue };
-            let x = self.left + place * self.plot_width;
-            for text in wrap(&mark.label, LETTERS, self.width - 8.0) {
-                let half = width(&text, LETTERS) / 2.0;
-                let centre = x.clamp(half.min(self.width / 2.0), (self.width - half).max(self.width / 2.0));
-                let span = (centre - half - 6.0, centre + half + 6.0);
-                let free =
-                    |row: &Vec<(f64, f64)>| row.iter().all(|taken| span.1 < taken.0 || span.0 > taken.1);
-                let row = rows.iter().position(free).unwrap_or(rows.len());
-                rows.resize_with(rows.len().max(row + 1), Vec::new);
-                rows[row].push(span);
-                let at = (centre, above + LINE * (row as f64 + 0.5));
-                self.mark_labels.push(MarkLabel { text, at, side: HPos::Center });
-            }
-        }
-        self.top = above + LINE * rows.len() as f64 + if rows.is_empty() { 0.0 } else { 2.0 };
+    fn label_marks(&mut self, chart: &Chart) {
+        let span = (self.left, self.plot_width);
+        let (labels, height) = marks::above(chart, &self.x, span, self.width, self.top);
+        self.mark_labels = labels;
+        self.top += height;
+        let frame =
+            Frame { left: self.left, top: self.top, width: self.plot_width, height: self.plot_height };
+        self.mark_labels.extend(marks::beside(chart, (&self.x, &self.y), frame, &self.curves));
     }
+}
 
-    /// Labels of horizontal lines: on the line, at the right end; at the left end where another is near.
-    fn label_y_marks(&mut self, chart: &Chart) {
-        let mut taken: Vec<f64> = Vec::new();
-        for mark in chart.marks.iter().filter(|mark| mark.axis == MarkAxis::Y) {
-            let Some(place) = self.y.place(mark.at).filter(|&y| inside(&(0.0, y))) else { continue };
-            let line = self.top + (1.0 - place) * self.plot_height;
-            let lines = wrap(&mark.label, LETTERS, self.plot_width - 12.0);
-            let room = LINE * lines.len() as f64;
-            // Above the line, unless that is outside the frame.
-            let start = if line - room < self.top { line + 3.0 } else { line - room };
-            let near = taken.iter().any(|other| (other - line).abs() < LINE + 2.0);
-            taken.push(line);
-            let (side, x) = if near {
-                (HPos::Left, self.left + 6.0)
-            } else {
-                (HPos::Right, self.left + self.plot_width - 6.0)
-            };
-            for (row, text) in lines.into_iter().enumerate() {
-                let at = (x, start + LINE * (row as f64 + 0.5) - 1.0);
-                self.mark_labels.push(MarkLabel { text, at, side });
-            }
-        }
-    }
+/// Which of the lines with its stroke a series is, and how many there are.
+pub(super) fn turn(chart: &Chart, index: usize) -> (usize, usize) {
+    let stroke = chart.series[index].stroke;
+    let same = |until: usize| chart.series[..until].iter().filter(|series| series.stroke == stroke).count();
+    (same(index), same(chart.series.len()))
 }
 
 /// Axes that hold all points and marks. A point counts only where both of its values can be drawn.

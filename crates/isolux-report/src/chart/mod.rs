@@ -5,6 +5,7 @@ mod curves;
 mod draw;
 mod layout;
 mod marker;
+mod marks;
 mod scale;
 mod text;
 mod ticks;
@@ -12,7 +13,7 @@ mod ticks;
 use crate::error::ReportError;
 use crate::markup::{Escaped, put};
 use crate::page::{Axis, Chart, Scale, Stroke};
-use layout::{Format, Layout};
+use layout::{Format, Layout, turn};
 
 pub(crate) use ticks::scientific;
 
@@ -29,10 +30,7 @@ pub(crate) fn put_chart(out: &mut String, chart: &Chart) -> Result<(), ReportErr
     put_legend(out, chart);
     for format in [Format::Wide, Format::Narrow] {
         let layout = Layout::new(chart, format);
-        let curve =
-            |index: usize| curves::curve(&chart.series[index], &layout.x, &layout.y, turn(chart, index));
-        let curves: Vec<_> = (0..chart.series.len()).map(curve).collect();
-        let drawing = draw::draw(chart, &layout, &curves)
+        let drawing = draw::draw(chart, &layout)
             .map_err(|reason| ReportError::Drawing { id: chart.id.clone(), reason })?;
         put!(
             out,
@@ -56,13 +54,6 @@ pub(crate) fn left_out(chart: &Chart) -> Option<String> {
         1 => Some("One point that is not positive has no place on the logarithmic axis.".to_owned()),
         count => Some(format!("{count} points that are not positive have no place on the logarithmic axis.")),
     }
-}
-
-/// Which of the lines with its stroke a series is, and how many there are.
-fn turn(chart: &Chart, index: usize) -> (usize, usize) {
-    let stroke = chart.series[index].stroke;
-    let same = |until: usize| chart.series[..until].iter().filter(|series| series.stroke == stroke).count();
-    (same(index), same(chart.series.len()))
 }
 
 fn put_legend(out: &mut String, chart: &Chart) {

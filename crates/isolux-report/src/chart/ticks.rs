@@ -17,16 +17,13 @@ pub(super) fn step(low: f64, high: f64, count: usize) -> f64 {
     let rough = (high - low) / count.max(1) as f64;
     let decade = 10f64.powf(rough.log10().floor());
     let part = rough / decade;
-    decade
-        * if part <= 1.0 {
-            1.0
-        } else if part <= 2.0 {
-            2.0
-        } else if part <= 5.0 {
-            5.0
-        } else {
-            10.0
-        }
+    let mantissa = match part {
+        _ if part < 1.5 => 1.0,
+        _ if part < 3.0 => 2.0,
+        _ if part < 7.0 => 5.0,
+        _ => 10.0,
+    };
+    decade * mantissa
 }
 
 /// Ticks of equal differences from `low` to `high`, about `count`.
@@ -58,7 +55,7 @@ pub(super) fn logarithmic(low: f64, high: f64, count: usize) -> Ticks {
     let decades = (high / low).log10();
     let mut chosen = of(&[1]);
     if decades < 2.5 {
-        chosen = of(&[1, 2, 5]);
+        chosen = if decades < 1.3 { of(&[1, 2, 3, 5, 7]) } else { of(&[1, 2, 5]) };
         if chosen.len() < 3 {
             chosen = of(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
         }
@@ -159,7 +156,7 @@ mod tests {
     fn logarithmic_ticks_suit_the_span() {
         assert_eq!(labels(&logarithmic(0.5, 2000.0, 6)), ["1", "10", "100", "1000"]);
         assert_eq!(labels(&logarithmic(0.9, 25.0, 6)), ["1", "2", "5", "10", "20"]);
-        assert_eq!(labels(&logarithmic(0.5, 3.0, 6)), ["0.5", "1", "2"]);
+        assert_eq!(labels(&logarithmic(0.5, 3.0, 6)), ["0.5", "0.7", "1", "2", "3"]);
         assert_eq!(labels(&logarithmic(1.02, 1.18, 3)), ["1.05", "1.10", "1.15"]);
         assert_eq!(labels(&logarithmic(1e-12, 1e12, 4)), ["10⁻⁷", "1", "10⁷"]);
     }
