@@ -31,4 +31,7 @@ pub enum PaperError {
         /// What is not there.
         missing: &'static str,
     },
+    /// A detector of the image library refused its input.
+    #[error("image library: {0}")]
+    Detector(String),
 }

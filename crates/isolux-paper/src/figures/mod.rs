@@ -3,6 +3,7 @@
 mod exposure;
 mod objects;
 mod parts;
+mod purpose;
 mod scenes;
 mod specular;
 
@@ -20,4 +21,5 @@ pub const ALL: &[(&str, Experiment)] = &[
     ("figures 6 and 13", specular::section),
     ("figures 7 to 9", scenes::section),
     ("figures 11 and 12", objects::section),
+    ("one set of parameters", purpose::section),
 ];
