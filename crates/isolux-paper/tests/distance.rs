@@ -180,6 +180,25 @@ fn the_shortest_time_strays_and_the_noise_floor_says_why() {
 }
 
 #[test]
+fn the_shortest_time_lacks_signal_where_the_camera_says_so() {
+    let claim = claim(section(), "shortest-time-has-little-signal");
+    let ratio = |distance_m: f64| model_dn(200.0, distance_m) / model_noise_dn(200.0, distance_m);
+    // The floor is measured on the wall, which is as bright as the board at 0.9 m: that is where both agree.
+    let last_strong = decay(200.0).into_iter().rfind(|mean| mean.true_distance_m < claim.value - 0.01);
+    assert!(
+        ratio(claim.value) < 10.0 && ratio(last_strong.unwrap().true_distance_m) > 10.0,
+        "{}",
+        claim.value
+    );
+    assert!(
+        claim.verdict == Verdict::Holds && claim.measured.ends_with("0.9 times at 3 m."),
+        "{}",
+        claim.measured
+    );
+    assert!((ratio(3.0) - 0.9).abs() < 0.05, "{}", ratio(3.0));
+}
+
+#[test]
 fn the_calibration_left_the_shortest_time_out_for_its_distances() {
     let section = section();
     assert!(lab().report.decays.iter().all(|(decay, _)| decay.integration_time_us != Some(200.0)));

@@ -11,6 +11,8 @@ use crate::lab::{BoardMean, Lab};
 
 /// A curve strays that deviates this many times more than the rest.
 const STRAYS_TIMES: f64 = 3.0;
+/// Below this ratio of signal and noise distances are not reliable (methods, section 3).
+const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
 /// The floor is measured on the wall, whose own light adds shot noise: 5 % more than on the far board.
 const FLOOR_WITHIN: f64 = 0.05;
 /// Curves within this (root mean square) of the pooled cubic count as one.
@@ -28,6 +30,7 @@ pub(super) fn claims(lab: &Lab, curves: &[Curve]) -> Result<Vec<Claim>, PaperErr
         clustered(&normalized, pooled),
         strays(stray, &fitted, pooled),
         floor_explains(lab, curves, stray, pooled)?,
+        little_signal(lab, curves, stray, pooled),
         distances(stray, &fitted),
         flat(&normalized, pooled),
     ];
@@ -124,6 +127,24 @@ fn floor_explains(lab: &Lab, curves: &[Curve], stray: &Curve, pooled: &Cubic) ->
     })
 }
 
+fn little_signal(lab: &Lab, curves: &[Curve], stray: &Curve, pooled: &Cubic) -> Claim {
+    let ratio = |point: &BoardMean| noise_free_dn(lab, curves, stray, pooled, point) / floor_dn(lab);
+    let weak = stray.points.iter().find(|point| ratio(point) < LEAST_SIGNAL_TO_NOISE);
+    let from_m = weak.map_or(f64::NAN, |point| point.true_distance_m);
+    Claim {
+        id: "shortest-time-has-little-signal".to_owned(),
+        statement: format!(
+            "Beyond the paper: at 0.2 ms the signal is less than {LEAST_SIGNAL_TO_NOISE} times the noise."
+        ),
+        measured: format!(
+            "From {from_m:.2} m on; {:.1} times at 3 m.",
+            stray.points.last().map_or(f64::NAN, ratio)
+        ),
+        value: from_m,
+        verdict: verdict(from_m.is_finite(), "it is not, at any distance"),
+    }
+}
+
 fn distances(stray: &Curve, fitted: &[&Curve]) -> Claim {
     let value = largest_distance_error_m(stray);
     let normalized = fitted.iter().filter(|curve| curve.reaches_reference);
@@ -200,7 +221,7 @@ fn joined(lab: &Lab, curves: &[Curve], normalized: &[&Curve], pooled: &Cubic) ->
         statement: "With the integration time scaled on top, all curves lie together (dashed, about 0.5)."
             .to_owned(),
         measured: format!(
-            "Largest deviation of any position of these curves from the amplitude at 8.2 ms and 0.75 m, 0.5 to 3 m: \
+            "Largest deviation of any position of the curves that reach 750 mm from the amplitude at 8.2 ms and 0.75 m: \
              {:.1} %.",
             100.0 * value
         ),
