@@ -30,6 +30,7 @@
 
 pub mod calibrate;
 pub mod calibration;
+pub mod diagnose;
 pub mod evaluate;
 pub mod flags;
 pub mod frame;
@@ -39,6 +40,7 @@ mod noise;
 pub mod phase;
 pub mod plane;
 mod quantile;
+pub mod regression;
 pub mod specular;
 pub mod standardize;
 pub mod statistics;

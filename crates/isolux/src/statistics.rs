@@ -7,7 +7,7 @@
 pub const SIGMA_PER_MAD: f64 = 1.482_602_218_505_602;
 
 /// Normal quantile of a two-sided 95 % interval.
-const Z_95: f64 = 1.959_963_984_540_054;
+pub(crate) const Z_95: f64 = 1.959_963_984_540_054;
 
 /// The `fraction` quantile (0..=1) with linear interpolation between order statistics, definition 7 of Hyndman
 /// and Fan (1996), as NumPy's default. Reorders `values`. `None` for an empty slice or a fraction outside 0..=1.

@@ -1,0 +1,111 @@
+//! What the vendor's scaling means, in words.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::effect::{Estimate, State};
+use super::scaling::Scaling;
+
+/// A factor within this of 1 at the corner is none.
+const EVEN: f64 = 0.1;
+/// A root mean square residual of ln(vendor/raw) beyond this: the law is not the vendor's.
+const LOOSE: f64 = 0.15;
+
+/// What the vendor does to the amplitude.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VendorFinding {
+    /// Exponent of t in vendor/raw; `None` where it is not told.
+    pub time_exponent: Option<f64>,
+    /// `Present`: t is fully taken out; `Removed`: t plays no part.
+    pub time: Option<State>,
+    /// Exponent of d in vendor/raw; `None` where it is not told.
+    pub distance_exponent: Option<f64>,
+    /// `Present`: d⁻² is fully taken out; `Removed`: d plays no part.
+    pub distance: Option<State>,
+    /// Factor at r = 1 relative to the principal point; `None` where it is not told.
+    pub corner_factor: Option<f64>,
+    /// True when that factor is 1 within its interval and 10 %.
+    pub even: bool,
+    /// Root mean square residual of ln(vendor/raw).
+    pub residual_rms: f64,
+    /// False when the residual is so large that the scaling is something else than powers.
+    pub is_powers: bool,
+    /// True when the residual is mere rounding.
+    pub exact: bool,
+}
+
+impl From<&Scaling> for VendorFinding {
+    fn from(scaling: &Scaling) -> Self {
+        let time = scaling.time.as_ref().ok();
+        let distance = scaling.distance.as_ref().ok();
+        let corner = scaling.radial.as_ref().ok().map(|radial| radial.corner_factor);
+        // Minus the vendor's exponent is that of an effect that the vendor takes out.
+        let minus = |estimate: &Estimate| estimate.divided_by(-1.0);
+        Self {
+            time_exponent: time.map(|time| time.value),
+            time: time.map(|time| State::of_time(minus(time))),
+            distance_exponent: distance.map(|distance| distance.value),
+            distance: distance.map(|distance| State::of_distance(minus(distance))),
+            corner_factor: corner.map(|corner| corner.value),
+            even: corner.is_none_or(|corner| corner.reaches(1.0 - EVEN, 1.0 + EVEN)),
+            residual_rms: scaling.residual_rms,
+            is_powers: scaling.residual_rms < LOOSE,
+            exact: scaling.exact,
+        }
+    }
+}
+
+impl VendorFinding {
+    /// A few words for the headline.
+    pub(super) fn short(&self) -> String {
+        if !self.is_powers {
+            return "the vendor's scaling is no power law".to_owned();
+        }
+        let mut words = Vec::new();
+        let mut tell = |name: &str, state: Option<State>| match state {
+            Some(State::Present) => words.push(format!("takes {name} out")),
+            Some(State::Removed) => words.push(format!("leaves {name} in")),
+            Some(State::Undetermined) | None => {}
+            Some(_) => words.push(format!("changes the effect of {name}")),
+        };
+        tell("integration time", self.time);
+        tell("distance", self.distance);
+        words.extend((!self.even).then(|| "has a radial term".to_owned()));
+        if words.is_empty() {
+            words.push("has no effect that could be told".to_owned());
+        }
+        format!("the vendor's scaling {}", words.join(", "))
+    }
+}
+
+impl fmt::Display for VendorFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.is_powers {
+            return write!(
+                f,
+                "The vendor's image is no product of powers of time and distance and a radial term: such a law misses it \
+                 by {:.0} % (root mean square). The exponents below are averages.",
+                100.0 * self.residual_rms
+            );
+        }
+        let mut parts = Vec::new();
+        parts.extend(self.time_exponent.map(|exponent| match self.time {
+            Some(State::Present) => format!("takes the integration time out (t^{exponent:.2})"),
+            Some(State::Removed) => format!("leaves the integration time in (t^{exponent:.2})"),
+            _ => format!("goes with t^{exponent:.2}"),
+        }));
+        parts.extend(self.distance_exponent.map(|exponent| match self.distance {
+            Some(State::Present) => format!("takes the distance out (d^{exponent:.2})"),
+            Some(State::Removed) => format!("has no distance term (d^{exponent:.2})"),
+            _ => format!("goes with d^{exponent:.2}"),
+        }));
+        parts.extend(self.corner_factor.map(|factor| match self.even {
+            true => "has no radial term".to_owned(),
+            false => format!("has a radial term, a factor of {factor:.2} at the corner (r = 1)"),
+        }));
+        let exact =
+            if self.exact { " The relation is exact: one image was computed from the other." } else { "" };
+        write!(f, "The vendor's scaling {}.{exact}", parts.join("; "))
+    }
+}
