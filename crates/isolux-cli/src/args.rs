@@ -28,7 +28,9 @@ pub(crate) enum Command {
     Calibrate(CalibrateArgs),
     Standardize(StandardizeArgs),
     Evaluate(EvaluateArgs),
+    Diagnose(DiagnoseArgs),
     Simulate(SimulateArgs),
+    Paper(PaperArgs),
     Completions(CompletionsArgs),
 }
 
@@ -179,7 +181,9 @@ pub(crate) struct StepArgs {
 /// threshold keeps finding the same pixels, how far the histograms lie apart. For any scene: how the amplitude
 /// goes with distance, and the noise. The valid fraction stands beside each figure.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  isolux evaluate desk -c CAMERA.json\n  isolux evaluate desk --json")]
+#[command(
+    after_help = "Examples:\n  isolux evaluate desk -c CAMERA.json\n  isolux evaluate desk -c CAMERA.json --trusted --report desk.html\n  isolux evaluate desk --json"
+)]
 pub(crate) struct EvaluateArgs {
     /// The recording
     #[arg(value_name = "REC")]
@@ -192,6 +196,31 @@ pub(crate) struct EvaluateArgs {
     /// Leave out pixels flagged LOW_SIGNAL or SATURATED, before and after
     #[arg(long)]
     pub(crate) trusted: bool,
+    /// Also write a page with the figures, curves and pictures
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Say whether a stream is raw, already corrected, gamma'd or clipped
+///
+/// Regresses the logarithm of the amplitude on those of integration time and distance and on r² (r: distance from
+/// the principal point in units of the half diagonal), each where the recording determines it: times from a still
+/// scene, distances from one labelled target (`target` channel) or one vendor reflectivity. With
+/// `vendor_amplitude`, the same for the vendor's scaling; with `phase_samples`, for the amplitude against eq. 1.
+/// Says what the recording cannot tell, and what to record instead. All intervals are 95 %, from errors clustered
+/// by image block and by frame.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    isolux diagnose desk\n  \
+    isolux diagnose desk.npz --json | jq .findings\n  \
+    isolux simulate board-distances -o board && isolux diagnose board")]
+pub(crate) struct DiagnoseArgs {
+    /// The recording
+    #[arg(value_name = "REC")]
+    pub(crate) recording: PathBuf,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -235,6 +264,21 @@ pub(crate) struct SimulateArgs {
     /// Print a built-in scene or camera
     #[arg(long, value_name = "NAME", conflicts_with = "list")]
     pub(crate) print: Option<String>,
+}
+
+/// Repeat every experiment of the paper on the simulated SR-3100
+///
+/// Writes one page with each figure, what the paper states about it, what is measured here and whether it holds, and
+/// the numbers of every figure as CSV beside it.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  isolux paper\n  isolux paper -o /tmp/paper --seed 2")]
+pub(crate) struct PaperArgs {
+    /// Folder for index.html, data/ and pictures/
+    #[arg(short, long, value_name = "DIR", default_value = "isolux-paper")]
+    pub(crate) output: PathBuf,
+    /// Seed of the simulated noise
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
 }
 
 /// Print completions for a shell

@@ -49,6 +49,16 @@ pub(crate) fn progress(what: &str, frames: usize) -> ProgressBar {
     bar
 }
 
+/// A spinner whose message is the step at hand; invisible unless stderr is a terminal.
+pub(crate) fn steps() -> ProgressBar {
+    let spinner = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+        spinner.set_style(style);
+    }
+    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner
+}
+
 /// Lays out rows in columns, two spaces apart; the first row is a header where `header` is set. The first column
 /// is aligned left, all others right.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {

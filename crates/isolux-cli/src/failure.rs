@@ -12,21 +12,29 @@ use isolux::standardize::PlanError;
 #[error("{message}")]
 pub(crate) struct Failure {
     message: String,
-    usage: bool,
+    exit_code: u8,
 }
 
 /// What commands return.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
+    /// Exit code after Ctrl-C, as shells have it.
+    pub(crate) const INTERRUPTED: u8 = 130;
+
+    /// The user has stopped the command.
+    pub(crate) fn interrupted() -> Self {
+        Self { message: "interrupted; nothing was written".to_owned(), exit_code: Self::INTERRUPTED }
+    }
+
     /// The data are bad.
     pub(crate) fn data(message: impl Display) -> Self {
-        Self { message: message.to_string(), usage: false }
+        Self { message: message.to_string(), exit_code: 1 }
     }
 
     /// The call is bad.
     pub(crate) fn usage(message: impl Display) -> Self {
-        Self { message: message.to_string(), usage: true }
+        Self { message: message.to_string(), exit_code: 2 }
     }
 
     /// Bad data in a frame of a recording.
@@ -36,7 +44,7 @@ impl Failure {
 
     /// The process's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(if self.usage { 2 } else { 1 })
+        ExitCode::from(self.exit_code)
     }
 }
 

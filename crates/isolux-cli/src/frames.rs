@@ -5,8 +5,8 @@ use std::path::Path;
 use isolux::{Calibration, Channels, Frame};
 use isolux_io::Recording;
 
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::{console, interrupt};
 
 /// Reads every frame into the same memory and hands it over with its number. `what` names the work beside the
 /// progress bar.
@@ -20,6 +20,7 @@ pub(crate) fn for_each(
     let progress = console::progress(what, count);
     let mut frame = Frame::new(recording.metadata().shape);
     for index in 0..count {
+        interrupt::check()?;
         recording.read_frame(index, wanted, &mut frame)?;
         visit(index, &frame)?;
         progress.inc(1);

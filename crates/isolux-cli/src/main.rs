@@ -1,12 +1,14 @@
 //! `isolux`: standardizes the amplitude images of time-of-flight cameras.
 
 mod args;
+mod assessment;
 mod cmd;
 mod console;
+mod evaluation_page;
 mod failure;
 mod frames;
+mod interrupt;
 mod output;
-mod picture;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -22,7 +24,9 @@ fn main() -> ExitCode {
         Command::Calibrate(args) => cmd::calibrate::run(&args),
         Command::Standardize(args) => cmd::standardize::run(&args),
         Command::Evaluate(args) => cmd::evaluate::run(&args),
+        Command::Diagnose(args) => cmd::diagnose::run(&args),
         Command::Simulate(args) => cmd::simulate::run(&args),
+        Command::Paper(args) => cmd::paper::run(&args),
         Command::Completions(args) => cmd::completions::run(&args),
     };
     match outcome {

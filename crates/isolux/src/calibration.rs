@@ -117,12 +117,24 @@ impl Calibration {
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
+        // From a nanosecond to a quarter of an hour, from a tenth of a millimetre to 100 km: far beyond any camera.
+        let (times_us, distances_m) = (1e-3..=1e9, 1e-4..=1e5);
         require(self.format == Self::FORMAT, "format", &self.format, Self::FORMAT)?;
         require(self.version == Self::VERSION, "version", self.version, "1")?;
         let Reference { integration_time_us, distance_m } = self.reference;
         let time = integration_time_us.unwrap_or(REFERENCE_TIME_US);
-        require(positive(time), "reference.integration_time_us", time, "a positive time in µs")?;
-        require(positive(distance_m), "reference.distance_m", distance_m, "a positive distance in m")?;
+        require(
+            times_us.contains(&time),
+            "reference.integration_time_us",
+            time,
+            "a time in µs, 1e-3 to 1e9",
+        )?;
+        require(
+            distances_m.contains(&distance_m),
+            "reference.distance_m",
+            distance_m,
+            "a distance in m, 1e-4 to 1e5",
+        )?;
         if let Some(floor) = self.noise_floor {
             let fine = positive(floor.low_signal_below_dn) && positive(floor.amplitude_sd_dn);
             require(fine, "noise_floor", floor.low_signal_below_dn, "positive numbers")?;

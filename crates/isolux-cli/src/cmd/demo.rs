@@ -7,14 +7,17 @@ use std::path::{Path, PathBuf};
 use isolux::calibrate::CalibrateSettings;
 use isolux::evaluate::Comparison;
 use isolux::standardize::Method;
-use isolux::{Calibration, Channels, Choice, Frame, Plane, Standardizer};
+use isolux::{Calibration, Channels, Choice, IntegrationTime, Standardizer};
+use isolux_io::Recording;
+use isolux_report::page::{Page, Picture, Section};
 use serde_json::{Value, json};
 
 use crate::args::DemoArgs;
+use crate::assessment::{Pixels, assess};
 use crate::cmd::{calibrate, evaluate, simulate, standardize};
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::picture::{white_level, write_montage};
+use crate::{evaluation_page, frames};
 
 /// Marks a folder as a demo, which the next one may replace.
 const FIGURES: &str = "demo.json";
@@ -78,8 +81,8 @@ pub(crate) fn run(args: &DemoArgs) -> Outcome {
     fs::rename(staging.keep(), &args.dir).map_err(io)?;
     let dir = args.dir.display();
     console::print(format!(
-        "\nIn {dir}: recordings/, CAMERA.json, standardized/, before-after-*.png (top: raw, bottom: standardized), \
-         {FIGURES}\nThe same with your own recording: isolux info REC"
+        "\nIn {dir}: report.html, recordings/, CAMERA.json, standardized/, before-after-*.png (top: raw, bottom: \
+         standardized), {FIGURES}\nThe same with your own recording: isolux info REC"
     ))
 }
 
@@ -118,57 +121,82 @@ impl Demo {
         isolux_io::write_calibration(&calibration, &self.folder.join("CAMERA.json"))?;
         console::print("Calibration, from a wall over integration times and a board over distances\n")?;
         console::print(calibrate::describe(&calibration, &report))?;
-        let mut figures = serde_json::Map::new();
+        let (mut figures, mut sections) = (serde_json::Map::new(), Vec::new());
         for exhibit in &EXHIBITS {
-            let comparison = self.show(exhibit, &calibration)?;
+            let (comparison, section) = self.show(exhibit, &calibration)?;
             figures.insert(exhibit.scene.to_owned(), json!(comparison));
+            sections.push(section);
         }
+        isolux_report::write_report(&self.page(sections), &self.folder, "report.html")
+            .map_err(Failure::data)?;
         Ok(json!({"seed": self.seed, "method": "paper", "scenes": figures}))
     }
 
     /// Standardizes and evaluates one scene with the paper's method, and pictures it.
-    fn show(&self, exhibit: &Exhibit, calibration: &Calibration) -> Outcome<Comparison> {
+    fn show(&self, exhibit: &Exhibit, calibration: &Calibration) -> Outcome<(Comparison, Section)> {
         let mut input = isolux_io::open(&self.recording(exhibit.scene))?;
         let choice = Choice { method: Method::Paper, ..Choice::default() };
         let standardizer = Standardizer::plan(&choice, Some(calibration), input.metadata().available)?;
         let output = self.folder.join("standardized").join(exhibit.scene);
         let options = standardize::WriteOptions::default();
         standardize::standardize(&mut *input, &standardizer, Some(calibration), &output, options)?;
-        let comparison =
-            evaluate::compare(&mut *input, &standardizer, Some(calibration), evaluate::Pixels::Trusted)?;
+        let assessment = assess(&mut *input, &standardizer, Some(calibration), Pixels::Trusted)?;
         console::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;
-        console::print(evaluate::describe_rows(&comparison, |metric| {
+        console::print(evaluate::describe_rows(&assessment.comparison, |metric| {
             exhibit.figures.iter().any(|wanted| metric.starts_with(wanted))
         }))?;
-        self.picture(exhibit, &output)?;
-        Ok(comparison)
+        let frames = pictured_frames(&mut *input, exhibit.pictured_us)?;
+        let pictures = evaluation_page::pictures(&mut *input, &standardizer, &frames, exhibit.scene)?;
+        self.montage(exhibit, &pictures)?;
+        let title = format!("{}: {}", exhibit.scene, exhibit.shows.replace('-', " "));
+        let section = evaluation_page::section(exhibit.scene, &title, &standardizer, &assessment, pictures);
+        Ok((assessment.comparison, section))
     }
 
     /// Raw frames above, standardized ones below, each row on one grey scale.
-    fn picture(&self, exhibit: &Exhibit, standardized: &Path) -> Outcome {
-        let (mut input, mut output) =
-            (isolux_io::open(&self.recording(exhibit.scene))?, isolux_io::open(standardized)?);
-        let shape = input.metadata().shape;
-        let (mut raw, mut corrected) = (Vec::new(), Vec::new());
-        let mut frame = Frame::new(shape);
-        for index in 0..input.metadata().frame_count {
-            input.read_frame(index, Channels::AMPLITUDE | Channels::INTEGRATION_TIME, &mut frame)?;
-            let isolux::IntegrationTime::PerFrame(time_us) = frame.integration_time_us else { continue };
-            if exhibit.pictured_us.get(raw.len()) == Some(&time_us) {
-                let mut plane = Plane::filled(shape, f32::NAN);
-                output.read_plane("standardized_amplitude", index, &mut plane)?;
-                corrected.push(plane);
-                raw.push(frame.amplitude.clone());
-            }
-        }
-        let rows = [raw, corrected].map(|planes| {
-            let white = white_level(&planes, 0.995);
-            (planes, white)
+    fn montage(&self, exhibit: &Exhibit, pictures: &[Picture]) -> Outcome {
+        let (raw, standardized) = pictures.split_at(pictures.len() / 2);
+        let rows = [raw, standardized].map(|row| {
+            let range = row.first().map_or((0.0, 1.0), |picture| picture.range);
+            (row.iter().map(|picture| picture.values.clone()).collect(), range)
         });
-        write_montage(&self.folder.join(format!("before-after-{}.png", exhibit.shows)), &rows)
+        let path = self.folder.join(format!("before-after-{}.png", exhibit.shows));
+        let bytes = isolux_report::png::montage(&rows).map_err(Failure::data)?;
+        isolux_io::write_whole(&path, &bytes)
+            .map_err(|error| Failure::data(format!("cannot write `{}`: {error}", path.display())))
+    }
+
+    fn page(&self, sections: Vec<Section>) -> Page {
+        Page {
+            title: "isolux demo".to_owned(),
+            lead: "A simulated SR-3100, calibrated on a wall over integration times and a board over distances, then \
+                   standardized with the paper's method. Pixels flagged as too dark or saturated are left out of the \
+                   figures, before and after."
+                .to_owned(),
+            sections,
+            colophon: format!(
+                "Made by isolux {} with `isolux demo --seed {}`. All data are simulated.",
+                env!("CARGO_PKG_VERSION"),
+                self.seed
+            ),
+        }
     }
 
     fn recording(&self, scene: &str) -> PathBuf {
         self.folder.join("recordings").join(scene)
     }
+}
+
+/// The first frame of each of the wanted integration times.
+fn pictured_frames(recording: &mut dyn Recording, times_us: &[f64]) -> Outcome<Vec<usize>> {
+    let mut found = vec![None; times_us.len()];
+    frames::for_each(recording, Channels::INTEGRATION_TIME, "choosing pictures", |index, frame| {
+        if let IntegrationTime::PerFrame(time_us) = frame.integration_time_us
+            && let Some(position) = times_us.iter().position(|wanted| *wanted == time_us)
+        {
+            found[position].get_or_insert(index);
+        }
+        Ok(())
+    })?;
+    Ok(found.into_iter().flatten().collect())
 }

@@ -8,8 +8,8 @@ use isolux_io::{ChannelSpec, ElementType, RecordingInfo, RecordingWriter};
 use serde_json::json;
 
 use crate::args::SimulateArgs;
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::{console, interrupt};
 
 /// Channels beyond those that every recording has.
 #[derive(Clone, Copy, Debug, Default)]
@@ -99,7 +99,9 @@ pub(crate) fn record(simulation: &Simulation, extras: Extras, output: &Path, ove
     let progress = console::progress("simulating", simulation.len());
     // As many frames at a time as there are threads: their order, not their timing, decides the file.
     let (mut batch, step) = (Vec::new(), rayon::current_num_threads().max(1));
+    interrupt::watch();
     for start in (0..simulation.len()).step_by(step) {
+        interrupt::check()?;
         let indices = start..(start + step).min(simulation.len());
         let count = indices.len();
         simulation.render_frames(indices, &mut batch)?;

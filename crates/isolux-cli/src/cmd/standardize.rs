@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use crate::args::StandardizeArgs;
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::{frames, output};
+use crate::{frames, interrupt, output};
 
 /// Name of the output's main channel.
 const VALUES: &str = "standardized_amplitude";
@@ -74,6 +74,7 @@ pub(crate) fn standardize(
     output: &Path,
     options: WriteOptions,
 ) -> Outcome<Summary> {
+    interrupt::watch();
     let metadata = recording.metadata().clone();
     let kept = kept_channels(&metadata, options.keep_input)?;
     let mut channels = vec![
@@ -92,6 +93,7 @@ pub(crate) fn standardize(
     let mut summary = Summary::default();
     let progress = console::progress("standardizing", metadata.frame_count);
     for start in (0..metadata.frame_count).step_by(batch.len()) {
+        interrupt::check()?;
         let count = batch.len().min(metadata.frame_count - start);
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
             recording.read_frame(start + offset, standardizer.needed(), &mut slot.frame)?;

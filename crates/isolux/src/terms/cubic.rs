@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::polynomial::{evaluate, fit_relative};
-use super::{DistanceGain, FitQuality, ParameterError, Source, require, root_mean_square};
+use super::{DistanceGain, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require, root_mean_square};
 
 /// Amplitude and distance of the flat target at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,12 +90,12 @@ pub enum CubicError {
         /// Farthest usable distance, m.
         max_m: f64,
     },
-    /// The fitted multiplier is not positive everywhere in its range.
+    /// The multiplier is not positive, or beyond all reason, somewhere in its range.
     #[error(
-        "the fitted cubic falls to {multiplier:.3} at {distance_m:.3} m, a multiplier must be positive: \
-         record more distances, evenly spread"
+        "the cubic is {multiplier:.3e} at {distance_m:.3} m, a multiplier from 1e-9 to 1e9 expected: record more \
+         distances, evenly spread"
     )]
-    NotPositive {
+    Impossible {
         /// Where, m.
         distance_m: f64,
         /// Value there.
@@ -134,7 +134,7 @@ impl Cubic {
         let coefficients = fit_pool(&pool)?;
         let at_reference = evaluate(coefficients, reference_m);
         let range = range_of(&pool);
-        check_positive(coefficients, range)?;
+        check_multiplier(coefficients, range)?;
         let uses = inverses.iter().map(|inverse| inverse.report(coefficients)).collect();
         let cubic = Self {
             version: Self::VERSION,
@@ -173,9 +173,9 @@ impl Cubic {
             format!("{min_m}..{max_m}"),
             "two increasing distances in metres",
         )?;
-        let positive = check_positive(self.coefficients, self.valid_distance_m);
+        let positive = check_multiplier(self.coefficients, self.valid_distance_m);
         let found = positive.map_or_else(|error| error.to_string(), |()| String::new());
-        require(found.is_empty(), "cubic.coefficients", found, "a multiplier that is positive over its range")
+        require(found.is_empty(), "cubic.coefficients", found, "a multiplier from 1e-9 to 1e9 over its range")
     }
 }
 
@@ -261,13 +261,13 @@ fn no_anchor(inverses: &[Inverse], reference_m: f64) -> CubicError {
     }
 }
 
-fn check_positive(coefficients: [f64; 4], [min_m, max_m]: [f64; 2]) -> Result<(), CubicError> {
+fn check_multiplier(coefficients: [f64; 4], [min_m, max_m]: [f64; 2]) -> Result<(), CubicError> {
     const STEPS: u32 = 256;
     for step in 0..=STEPS {
         let distance_m = min_m + (max_m - min_m) * f64::from(step) / f64::from(STEPS);
         let multiplier = evaluate(coefficients, distance_m);
-        if multiplier.is_nan() || multiplier <= 0.0 {
-            return Err(CubicError::NotPositive { distance_m, multiplier });
+        if !MULTIPLIER_LIMITS.contains(&multiplier) {
+            return Err(CubicError::Impossible { distance_m, multiplier });
         }
     }
     Ok(())

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitQuality, ParameterError, Source, require, root_mean_square};
+use super::{FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require, root_mean_square};
 
 /// The mean image amplitude at one integration time of an exposure sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,8 +181,9 @@ impl Lut {
             "not increasing from above 0",
             "increasing positive times in µs",
         )?;
-        let positive = multipliers.iter().all(|m| *m > 0.0 && m.is_finite());
-        require(positive, "lut.multiplier", "a value that is not positive and finite", "positive numbers")?;
+        let impossible = multipliers.iter().find(|multiplier| !MULTIPLIER_LIMITS.contains(*multiplier));
+        let found = impossible.map_or_else(String::new, f64::to_string);
+        require(found.is_empty(), "lut.multiplier", found, "numbers from 1e-9 to 1e9")?;
         let inside = times[0] <= min_us && min_us < max_us && max_us <= times[times.len() - 1];
         let range = format!("{min_us}..{max_us}");
         require(inside, "lut.valid_integration_time_us", range, "a range inside the sampled times")

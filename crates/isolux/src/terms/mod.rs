@@ -52,6 +52,9 @@ pub struct ParameterError {
     pub expected: &'static str,
 }
 
+/// Multipliers beyond these limits turn any amplitude into nothing or infinity; no fit gives them.
+pub(crate) const MULTIPLIER_LIMITS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
 /// Refuses `found` in `field` unless it is `fine`.
 pub(crate) fn require(
     fine: bool,

@@ -1,0 +1,27 @@
+//! `isolux paper`: the paper's experiments, every figure, every number.
+
+use isolux_report::page::{Block, Verdict};
+
+use crate::args::PaperArgs;
+use crate::console;
+use crate::failure::{Failure, Outcome};
+
+pub(crate) fn run(args: &PaperArgs) -> Outcome {
+    let progress = console::steps();
+    let page = isolux_paper::page(args.seed, &mut |step| progress.set_message(step.to_owned()));
+    progress.finish_and_clear();
+    let page = page.map_err(Failure::data)?;
+    let written = isolux_report::write_report(&page, &args.output, "index.html").map_err(Failure::data)?;
+    let blocks = page.sections.iter().flat_map(|section| &section.blocks);
+    let claims =
+        blocks.filter_map(|block| if let Block::Claims(claims) = block { Some(claims) } else { None });
+    for claim in claims.flatten() {
+        let (word, why) = match &claim.verdict {
+            Verdict::Holds => ("holds", String::new()),
+            Verdict::Fails(why) => ("fails", format!(" ({why})")),
+            Verdict::Open(why) => ("open ", format!(" ({why})")),
+        };
+        console::print(format!("{word}  {}\n       {}{why}", claim.statement, claim.measured))?;
+    }
+    console::print(format!("written: {}", written.display()))
+}
