@@ -225,15 +225,8 @@ fn pair_of_pictures(pair: &Pair, time_us: f64, before: Plane<f32>, after: Plane<
 }
 
 fn table(pair: &Pair, ratios: &[Ratios]) -> Table {
-    let columns = [
-        "material and integration time",
-        "near / far before",
-        "(d far / d near)²",
-        "near / far after",
-        "near / far of place and angle",
-        "after without place and angle",
-        "far object before in DN",
-    ];
+    let columns =
+        ["near / far", "before", "d²", "after", "place and angle", "after without these", "far, DN"];
     let row = |ratio: &Ratios| -> Vec<Cell> {
         vec![
             text(&format!("{}, {:.1} ms", ratio.material, ratio.time_us / 1000.0)),
@@ -247,7 +240,12 @@ fn table(pair: &Pair, ratios: &[Ratios]) -> Table {
     };
     Table {
         id: format!("{}-ratios", pair.words),
-        caption: format!("The near of the two {} relative to the far one.", pair.words),
+        caption: format!(
+            "The near one of the two {} relative to the far one: amplitude before; (d far / d near)², what distance \
+             alone would do; amplitude after; what place in the image and angle do; after, without these; amplitude \
+             of the far one before.",
+            pair.words
+        ),
         columns: columns.map(str::to_owned).to_vec(),
         rows: ratios.iter().map(row).collect(),
     }

@@ -1,61 +1,24 @@
 //! Figures 7 to 9: two still scenes over the integration times; means of the whole image and of windows before
 //! and after the table.
 
-use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
-use isolux::{IntegrationTime, Plane, Standardized, Window};
-use isolux_camera::Scene;
-use isolux_camera::scene::run::RegisterRange;
+mod sweep;
+
+use isolux::statistics::quantile;
 use isolux_report::page::{
     Block, Cell, Chart, Claim, Colours, Picture, Scale, Section, Series, Stroke, Table,
 };
 
+use self::sweep::{Region, SCENES, Sweep};
 use super::parts::{axis, number, text, verdict};
 use crate::error::PaperError;
 use crate::lab::Lab;
-use crate::measure::{coefficient_of_variation, for_each, mean, mean_amplitude, regions, simulation_of};
 
-/// Last register of the paper's table, 27.2 ms.
-const LAST_REGISTER: u32 = 135;
-/// Frames that pass unrecorded after each change.
-const SKIPPED_FRAMES: u32 = 50;
 /// From here on the noise floor adds little to the means.
 const ABOVE_THE_FLOOR_US: f64 = 1000.0;
 /// "Several times less".
 const SEVERAL: f64 = 3.0;
 /// How far the corrected mean at the shortest time may be off when there is no noise.
 const TABLE_ERROR: f64 = 0.05;
-
-/// The two scenes.
-const SCENES: [Subject; 2] = [
-    Subject { scene: "office-desk", figure: 8, words: "scene 1, a desk" },
-    Subject { scene: "office-shelf", figure: 9, words: "scene 2, a corner with a shelf" },
-];
-
-struct Subject {
-    scene: &'static str,
-    /// Figure of its means.
-    figure: u32,
-    words: &'static str,
-}
-
-/// One scene over the integration times.
-struct Sweep {
-    subject: &'static Subject,
-    times_us: Vec<f64>,
-    regions: Vec<Region>,
-    /// Raw amplitude at the reference time.
-    picture: Plane<f32>,
-}
-
-/// Means of one region, one per integration time, DN.
-struct Region {
-    name: &'static str,
-    window: Window,
-    raw: Vec<f64>,
-    corrected: Vec<f64>,
-    /// What the table makes of the amplitude without noise.
-    noise_free: Vec<f64>,
-}
 
 /// The section of figures 7 to 9.
 ///
@@ -87,51 +50,11 @@ pub(super) fn section(lab: &Lab) -> Result<Section, PaperError> {
 }
 
 impl Sweep {
-    fn measure(lab: &Lab, subject: &'static Subject) -> Result<Self, PaperError> {
-        let simulation = simulation_of(over_registers(lab, subject)?, lab.seed)?;
-        let shape = simulation.shape();
-        let region = |(name, window)| Region {
-            name,
-            window,
-            raw: Vec::new(),
-            corrected: Vec::new(),
-            noise_free: Vec::new(),
-        };
-        let mut sweep = Self {
-            subject,
-            times_us: Vec::new(),
-            regions: regions(shape).into_iter().map(region).collect(),
-            picture: Plane::filled(shape, f32::NAN),
-        };
-        let table = lab.plan(TimeStep::Lut, DistanceStep::None, SpecularStep::None)?;
-        let (mut corrected, mut noise_free) = (Standardized::new(shape), Standardized::new(shape));
-        for_each(&simulation, |_, simulated| {
-            let mut frame = simulated.frame.clone();
-            let IntegrationTime::PerFrame(time_us) = frame.integration_time_us else { return Ok(()) };
-            table.apply(&frame, &mut corrected)?;
-            sweep.times_us.push(time_us);
-            if Some(time_us) == lab.calibration.reference.integration_time_us {
-                sweep.picture = frame.amplitude.clone();
-            }
-            let raw: Vec<f64> =
-                sweep.regions.iter().map(|region| mean_amplitude(&frame, region.window)).collect();
-            frame.amplitude = simulated.truth.noise_free_amplitude.clone();
-            table.apply(&frame, &mut noise_free)?;
-            for (region, raw) in sweep.regions.iter_mut().zip(raw) {
-                region.raw.push(raw);
-                region.corrected.push(mean(corrected.amplitude.values(), region.window.indices(shape)));
-                region.noise_free.push(mean(noise_free.amplitude.values(), region.window.indices(shape)));
-            }
-            Ok(())
-        })?;
-        Ok(sweep)
-    }
-
     fn picture(&self, lab: &Lab) -> Picture {
         let reference_ms = lab.calibration.reference.integration_time_us.unwrap_or(f64::NAN) / 1000.0;
         let mut values: Vec<f64> = self.picture.values().iter().copied().map(f64::from).collect();
         values.retain(|value| value.is_finite());
-        let white = isolux::statistics::quantile(&mut values, 0.995).unwrap_or(1.0);
+        let white = quantile(&mut values, 0.995).unwrap_or(1.0);
         Picture {
             id: format!("fig-7-{}", self.subject.scene),
             caption: format!(
@@ -176,65 +99,26 @@ impl Sweep {
             marks: Vec::new(),
         }
     }
-
-    /// CV before and after, over the times from `from_us` on.
-    fn variation(&self, region: &Region, from_us: f64) -> [f64; 2] {
-        let skipped = self.times_us.iter().filter(|time_us| **time_us < from_us).count();
-        [&region.raw, &region.corrected].map(|means| coefficient_of_variation(&means[skipped..]))
-    }
-
-    /// The integration times in words.
-    fn span(&self) -> String {
-        let ends = [self.times_us.first(), self.times_us.last()];
-        let [first, last] = ends.map(|time_us| time_us.map_or(f64::NAN, |time_us| time_us / 1000.0));
-        format!("{first:.1} to {last:.1} ms")
-    }
-
-    /// Index of the time at which the table is 1.
-    fn reference(&self) -> usize {
-        self.times_us
-            .iter()
-            .position(|time_us| *time_us == isolux::calibration::REFERENCE_TIME_US)
-            .unwrap_or(0)
-    }
-
-    /// `means` at the first (0) or last time, relative to the reference time's.
-    fn relative(&self, means: &[f64], index: usize) -> f64 {
-        means[index] / means[self.reference()]
-    }
-}
-
-/// The scene with the paper's integration times in place of its own few, as far as the table reaches.
-fn over_registers(lab: &Lab, subject: &Subject) -> Result<Scene, PaperError> {
-    let mut scene = Scene::builtin(subject.scene)?;
-    let missing = PaperError::Scene { scene: subject.scene, missing: "a run over integration times" };
-    let run = scene.runs.first_mut().ok_or(missing)?;
-    let end_us =
-        lab.calibration.terms.lut.as_ref().map_or(f64::INFINITY, |lut| lut.valid_integration_time_us[1]);
-    let last = LAST_REGISTER.min(lab.camera.integration_register.nearest(end_us));
-    run.integration_times_us.clear();
-    run.registers = Some(RegisterRange { first: 0, last, step: 1 });
-    run.frames_per_time = 1;
-    run.skip_frames = SKIPPED_FRAMES;
-    Ok(scene)
 }
 
 fn table(sweeps: &[Sweep]) -> Table {
+    let ends = sweeps.first().map_or([f64::NAN; 2], Sweep::ends_ms);
+    let [shortest, longest] = ends.map(|time_ms| format!("{time_ms:.1} / 8.2 ms"));
     let columns = [
         "scene and region",
         "CV before",
         "CV after",
         "before / after",
-        "before / after from 1 ms on",
-        "after at the shortest time relative to 8.2 ms",
-        "the same without noise",
-        "after at the longest time relative to 8.2 ms",
+        "from 1 ms on",
+        &shortest,
+        "without noise",
+        &longest,
     ];
     let row = |sweep: &Sweep, region: &Region| -> Vec<Cell> {
         let [raw, corrected] = sweep.variation(region, 0.0);
         let [raw_above, corrected_above] = sweep.variation(region, ABOVE_THE_FLOOR_US);
         vec![
-            text(&format!("{}, {}", sweep.subject.scene, region.name)),
+            text(&format!("{}, {}", sweep.subject.short, region.name)),
             number(raw, 3),
             number(corrected, 3),
             number(raw / corrected, 1),
@@ -247,7 +131,9 @@ fn table(sweeps: &[Sweep]) -> Table {
     Table {
         id: "scenes-variation".to_owned(),
         caption: format!(
-            "Variation of the means over {}: CV is standard deviation / mean.",
+            "Variation of the means over {}: CV is standard deviation / mean; before / after, and the same of the times \
+             from 1 ms on. The last three columns compare the corrected mean at both ends with that at 8.2 ms; at the \
+             lower end also that of the amplitude without noise.",
             sweeps.first().map_or_else(String::new, Sweep::span)
         ),
         columns: columns.map(str::to_owned).to_vec(),
@@ -285,7 +171,7 @@ fn shortest_time(sweeps: &[Sweep; 2]) -> String {
          does not fall to zero but to the noise floor (Rician bias). The table multiplies it by {:.0}, and was made on a \
          white wall well above the floor. So the corrected means of the two images at 0.2 ms are {:.1} and {:.1} times \
          those at 8.2 ms; without noise they would be {:.2} and {:.2} times (below 1 because the floor lifts the wall, \
-         too, a little).{darkest} From 1 ms on little of this is left. How much these few times weigh in a CV depends on \
+         too, a little).{darkest} From 1 ms on little of this is left in the images. How much these few times weigh in a CV depends on \
          the spacing of the times; here it is the even one of the camera's register.",
         whole.corrected[0] / whole.raw[0],
         first.0,

@@ -24,8 +24,8 @@ const BRIGHTEST_FRACTION: f64 = 0.999;
 
 /// The rules in the order of the page.
 pub(super) const RULES: [(&str, SpecularRule); 4] = [
-    ("percent: 0.9 of the maximum", SpecularRule::Percent(PercentRule::OfMaximum(0.9))),
-    ("percent: upper 10 % of the pixels", SpecularRule::Percent(PercentRule::Quantile(0.9))),
+    ("0.9 of maximum", SpecularRule::Percent(PercentRule::OfMaximum(0.9))),
+    ("upper 10 %", SpecularRule::Percent(PercentRule::Quantile(0.9))),
     ("mean + 4σ", SpecularRule::Sigma(SigmaRule { deviations: 4.0 })),
     ("histogram", SpecularRule::Histogram(HistogramRule { occurrences: None })),
 ];
