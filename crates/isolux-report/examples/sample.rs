@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn page() -> Page {
+pub(crate) fn page() -> Page {
     let section = |id: &str, title: &str, blocks| Section { id: id.into(), title: title.into(), blocks };
     Page {
         title: "Standardized amplitudes of a simulated SR-3100".into(),

@@ -1,7 +1,9 @@
 //! Where the parts of a chart are, for one width of the page.
 
+use plotters::style::text_anchor::HPos;
+
 use super::curves::{self, Curve};
-use super::marks::{self, Frame, MarkLabel};
+use super::marks::{self, MarkLabel};
 use super::scale::Extent;
 use super::text::{width, wrap};
 use super::ticks::Ticks;
@@ -118,14 +120,22 @@ impl Layout {
         layout
     }
 
+    /// Labels of marks: in the frame where there is room, in rows above it otherwise. Moves the frame down for them.
     fn label_marks(&mut self, chart: &Chart) {
         let span = (self.left, self.plot_width);
-        let (labels, height) = marks::above(chart, &self.x, span, self.width, self.top);
-        self.mark_labels = labels;
+        let (inner, homeless) =
+            marks::beside(chart, (&self.x, &self.y), span, self.plot_height, &self.curves);
+        let right = self.left + self.plot_width;
+        for text in homeless.iter().flat_map(|text| wrap(text, LETTERS, right)) {
+            let at = (right, self.top + LINE / 2.0);
+            self.mark_labels.push(MarkLabel { text, at, side: HPos::Right });
+            self.top += LINE;
+        }
+        let (rows, height) = marks::above(chart, &self.x, span, self.width, self.top);
+        self.mark_labels.extend(rows);
         self.top += height;
-        let frame =
-            Frame { left: self.left, top: self.top, width: self.plot_width, height: self.plot_height };
-        self.mark_labels.extend(marks::beside(chart, (&self.x, &self.y), frame, &self.curves));
+        let lowered = |label: MarkLabel| MarkLabel { at: (label.at.0, label.at.1 + self.top), ..label };
+        self.mark_labels.extend(inner.into_iter().map(lowered));
     }
 }
 

@@ -5,7 +5,7 @@ use plotters::style::text_anchor::HPos;
 use super::curves::{Curve, Place, cut_segment, inside};
 use super::layout::{LETTERS, LINE};
 use super::scale::Extent;
-use super::text::{width, wrap};
+use super::text::{self, wrap};
 use crate::page::{Chart, Mark, MarkAxis};
 
 /// Room between a label and the end of the frame or another label, pixels.
@@ -22,13 +22,12 @@ pub(super) struct MarkLabel {
     pub(super) side: HPos,
 }
 
-/// The frame that holds the curves, pixels.
+/// The frame that holds the curves, its top at 0, pixels.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+struct Frame {
+    left: f64,
+    width: f64,
+    height: f64,
 }
 
 /// Left, top, right and bottom, pixels.
@@ -52,7 +51,7 @@ pub(super) fn above(
     for mark in on(chart, MarkAxis::X) {
         let Some(place) = x.place(mark.at).filter(|&x| inside(&(x, 0.0))) else { continue };
         for text in wrap(&mark.label, LETTERS, whole - 8.0) {
-            let half = width(&text, LETTERS) / 2.0;
+            let half = text::width(&text, LETTERS) / 2.0;
             let middle = whole / 2.0;
             let centre = (left + place * plot_width).clamp(half.min(middle), (whole - half).max(middle));
             let span = (centre - half - ROOM, centre + half + ROOM);
@@ -71,34 +70,50 @@ pub(super) fn above(
     (labels, LINE * rows.len() as f64 + gap)
 }
 
-/// Labels of horizontal lines: just above or below their line, where the fewest curves are.
+/// Labels of horizontal lines: just above or below their line where nothing else is, in a frame whose top is at 0;
+/// and those that have no such place, with the value of their line.
 pub(super) fn beside(
     chart: &Chart,
     (x, y): (&Extent, &Extent),
-    frame: Frame,
+    (left, width): (f64, f64),
+    height: f64,
     curves: &[Curve],
-) -> Vec<MarkLabel> {
-    let mut labels = Vec::new();
+) -> (Vec<MarkLabel>, Vec<String>) {
+    let frame = Frame { left, width, height };
+    let (mut labels, mut homeless) = (Vec::new(), Vec::new());
     let mut taken: Vec<Rectangle> = Vec::new();
     let verticals: Vec<f64> = on(chart, MarkAxis::X).filter_map(|mark| x.place(mark.at)).collect();
-    for mark in on(chart, MarkAxis::Y) {
+    for mark in on(chart, MarkAxis::Y).filter(|mark| !mark.label.is_empty()) {
         let Some(place) = y.place(mark.at).filter(|&y| inside(&(0.0, y))) else { continue };
-        let line = frame.top + (1.0 - place) * frame.height;
+        let line = (1.0 - place) * frame.height;
         let lines = wrap(&mark.label, LETTERS, frame.width - 2.0 * ROOM);
-        let size =
-            (lines.iter().map(|text| width(text, LETTERS)).fold(0.0, f64::max), LINE * lines.len() as f64);
-        let cost = |rectangle: &Rectangle| {
-            let over = taken.iter().filter(|other| overlap(rectangle, other)).count();
-            1000 * over + covered(rectangle, frame, curves, &verticals)
+        let widest = lines.iter().map(|text| text::width(text, LETTERS)).fold(0.0, f64::max);
+        let free = |rectangle: &Rectangle| {
+            !taken.iter().any(|other| overlap(rectangle, other))
+                && !covers(rectangle, frame, curves, &verticals)
         };
-        let Some(best) = candidates(line, size, frame).into_iter().min_by_key(cost) else { continue };
+        let size = (widest, LINE * lines.len() as f64);
+        let Some(best) = candidates(line, size, frame).into_iter().find(free) else {
+            homeless.push(format!("⋯ {} (at {})", mark.label, short(mark.at)));
+            continue;
+        };
         taken.push(best);
         for (row, text) in lines.into_iter().enumerate() {
             let at = (best.2, best.1 + LINE * (row as f64 + 0.5));
             labels.push(MarkLabel { text, at, side: HPos::Right });
         }
     }
-    labels
+    (labels, homeless)
+}
+
+/// Three digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !(1e-3..1e5).contains(&value.abs()) {
+        return if value == 0.0 { "0".to_owned() } else { super::scientific(value, 2) };
+    }
+    let decimals = (2.0 - value.abs().log10().floor()).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if decimals > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Rectangles above and below the line, from the right end of the frame to the left one, inside the frame where
@@ -106,7 +121,7 @@ pub(super) fn beside(
 fn candidates(line: f64, (width, height): (f64, f64), frame: Frame) -> Vec<Rectangle> {
     let free = (frame.width - width - 2.0 * ROOM).max(0.0);
     let (above, below) = (line - height - 1.0, line + 2.0);
-    let starts = match (above >= frame.top, below + height <= frame.top + frame.height) {
+    let starts = match (above >= 0.0, below + height <= frame.height) {
         (true, false) => vec![above],
         (false, true) => vec![below],
         _ => vec![above, below],
@@ -122,21 +137,20 @@ fn overlap(a: &Rectangle, b: &Rectangle) -> bool {
     a.0 < b.2 + ROOM && b.0 < a.2 + ROOM && a.1 < b.3 && b.1 < a.3
 }
 
-/// How many pieces of curves, markers and vertical lines a label there would touch.
-fn covered(rectangle: &Rectangle, frame: Frame, curves: &[Curve], verticals: &[f64]) -> usize {
+/// Whether a label there would touch a curve, a marker or a vertical line.
+fn covers(rectangle: &Rectangle, frame: Frame, curves: &[Curve], verticals: &[f64]) -> bool {
     let &(left, top, right, bottom) = rectangle;
     // The rectangle becomes the unit square.
     let local = |&(x, y): &Place| {
-        let (x, y) = (frame.left + x * frame.width, frame.top + (1.0 - y) * frame.height);
+        let (x, y) = (frame.left + x * frame.width, (1.0 - y) * frame.height);
         ((x - left + 2.0) / (right - left + 4.0), (y - top + 1.0) / (bottom - top + 2.0))
     };
     let touches = |pair: &[Place]| cut_segment(local(&pair[0]), local(&pair[1])).is_some();
-    let segments = |curve: &Curve| {
-        curve.lines.iter().map(|line| line.windows(2).filter(|pair| touches(pair)).count()).sum::<usize>()
+    let touched = |curve: &Curve| {
+        curve.lines.iter().any(|line| line.windows(2).any(touches))
+            || curve.markers.iter().any(|place| inside(&local(place)))
     };
-    let markers = |curve: &Curve| curve.markers.iter().filter(|place| inside(&local(place))).count();
-    let data: usize = curves.iter().map(|curve| segments(curve) + markers(curve)).sum();
-    data + verticals.iter().filter(|&&x| touches(&[(x, 0.0), (x, 1.0)])).count()
+    curves.iter().any(touched) || verticals.iter().any(|&x| touches(&[(x, 0.0), (x, 1.0)]))
 }
 
 #[cfg(test)]
@@ -158,8 +172,6 @@ mod tests {
         }
     }
 
-    const FRAME: Frame = Frame { left: 0.0, top: 0.0, width: 400.0, height: 200.0 };
-
     #[test]
     fn a_label_moves_away_from_curves_and_stays_in_the_frame() {
         let chart = chart(&[(MarkAxis::Y, 0.5), (MarkAxis::Y, 1.0), (MarkAxis::Y, 0.0)]);
@@ -169,11 +181,23 @@ mod tests {
             lines: vec![vec![(0.6, 0.55), (1.0, 0.55)], vec![(0.6, 0.45), (1.0, 0.45)]],
             ..Curve::default()
         };
-        let labels = beside(&chart, (&extent, &extent), FRAME, &[curve]);
+        let (labels, homeless) = beside(&chart, (&extent, &extent), (0.0, 400.0), 200.0, &[curve]);
+        assert_eq!((labels.len(), homeless.len()), (3, 0));
         assert!(labels[0].at.0 < 240.0, "{}", labels[0].at.0);
         for label in &labels {
             assert!(label.at.1 > 0.0 && label.at.1 < 200.0, "{}", label.at.1);
         }
+    }
+
+    #[test]
+    fn a_label_without_a_free_place_names_its_value_instead() {
+        let chart = chart(&[(MarkAxis::Y, 0.5)]);
+        let extent = Extent::of(&chart.x, std::iter::empty());
+        let zigzag = (0..200).map(|step| (f64::from(step) / 199.0, f64::from(step % 2))).collect();
+        let curve = Curve { lines: vec![zigzag], ..Curve::default() };
+        let (labels, homeless) = beside(&chart, (&extent, &extent), (0.0, 400.0), 200.0, &[curve]);
+        assert!(labels.is_empty());
+        assert_eq!(homeless, ["⋯ a threshold (at 0.5)"]);
     }
 
     #[test]

@@ -65,7 +65,9 @@ impl Extent {
             Some(std::cmp::Ordering::Equal) => (low / 2.0, high * 2.0),
             _ => (1.0, 10.0),
         };
-        Self { scale: Scale::Log, low: low.max(f64::MIN_POSITIVE), high: high.max(2.0 * f64::MIN_POSITIVE) }
+        // Margins may lead out of what f64 can hold.
+        let (low, high) = (low.max(f64::MIN_POSITIVE), high.clamp(2.0 * f64::MIN_POSITIVE, f64::MAX));
+        Self { scale: Scale::Log, low, high }
     }
 
     /// The same, with ends at round numbers.
@@ -73,9 +75,17 @@ impl Extent {
         if axis.range.is_some() || self.scale == Scale::Log {
             return self;
         }
-        let step = ticks::step(self.low, self.high, count);
-        let (low, high) = ((self.low / step).floor() * step, (self.high / step).ceil() * step);
-        if low.is_finite() && high.is_finite() && low < high { Self { low, high, ..self } } else { self }
+        let mut rounded = self;
+        // The longer axis may want a longer step; then round to that.
+        for _ in 0..3 {
+            let step = ticks::step(rounded.low, rounded.high, count);
+            let (low, high) = ((self.low / step).floor() * step, (self.high / step).ceil() * step);
+            if !(low.is_finite() && high.is_finite() && low < high) {
+                return self;
+            }
+            rounded = Self { low, high, ..self };
+        }
+        rounded
     }
 
     /// 0 at the low end, 1 at the high end; `None` for a value that the axis cannot show.
@@ -180,6 +190,7 @@ mod tests {
             vec![-3.0],
             vec![1e300, -1e300],
             vec![5e-324, 1e-323],
+            vec![1e-300, 1e300],
             vec![1.0, 1.0 + f64::EPSILON],
             vec![f64::MAX],
         ];
