@@ -1,5 +1,6 @@
 //! One file per experiment; each makes a section of the page.
 
+mod competition;
 mod distance;
 mod exposure;
 mod objects;
@@ -26,4 +27,5 @@ pub const ALL: &[(&str, Experiment)] = &[
     ("figures 11 and 12", objects::section),
     ("one set of parameters", purpose::section),
     ("open questions", open_questions::section),
+    ("rivals on the same frames", competition::section),
 ];
