@@ -26,6 +26,6 @@ pub const ALL: &[(&str, Experiment)] = &[
     ("figures 7 to 9", scenes::section),
     ("figures 11 and 12", objects::section),
     ("one set of parameters", purpose::section),
-    ("open questions", open_questions::section),
     ("rivals on the same frames", competition::section),
+    ("open questions", open_questions::section),
 ];
