@@ -211,7 +211,7 @@ pub(crate) struct EvaluateArgs {
 /// scene, distances from one labelled target (`target` channel) or one vendor reflectivity. With
 /// `vendor_amplitude`, the same for the vendor's scaling; with `phase_samples`, for the amplitude against eq. 1.
 /// Says what the recording cannot tell, and what to record instead. All intervals are 95 %, from errors clustered
-/// by image block and by frame.
+/// by image block and by frame; a residual is the scatter of the logarithm around the fit, 10 % = 0.1.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux diagnose desk\n  \

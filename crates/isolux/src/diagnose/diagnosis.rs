@@ -6,9 +6,10 @@ use super::Diagnoser;
 use super::effect::{Effect, Estimate, Evidence, State};
 use super::finding::{self, Finding};
 use super::material::{Material, MaterialFit};
-use super::panel::StillPixels;
+use super::rules;
 use super::sample::Observed;
 use super::scaling::{Pair, Scaling};
+use super::still::StillPixels;
 use super::untold::{self, Outcome, Untold};
 use super::values::{Values, pile_up_value};
 
@@ -109,7 +110,7 @@ pub(super) fn conclude(diagnoser: &Diagnoser) -> Diagnosis {
         material,
         values,
     };
-    diagnosis.findings = finding::all(&diagnosis);
+    diagnosis.findings = rules::findings(&diagnosis);
     diagnosis
 }
 

@@ -47,8 +47,10 @@ mod effect;
 mod finding;
 mod material;
 mod panel;
+mod rules;
 mod sample;
 mod scaling;
+mod still;
 #[cfg(test)]
 mod tests;
 mod untold;
@@ -63,8 +65,8 @@ pub use diagnosis::Diagnosis;
 pub use effect::{Effect, Estimate, Evidence, State};
 pub use finding::Finding;
 pub use material::{Material, MaterialFit, RangeExponent};
-pub use panel::{Band, StillPixels};
 pub use scaling::{RadialTerm, Scaling, TimeGroup};
+pub use still::{Band, StillPixels};
 pub use untold::{Outcome, Untold};
 pub use values::{PileUp, Values};
 pub use vendor::VendorFinding;
@@ -96,7 +98,7 @@ pub struct DiagnoseSettings {
 }
 
 /// Takes frames one by one and comes to a [`Diagnosis`]. Memory does not grow with the number of frames: at most
-/// about 45 MB.
+/// about 45 MB, and as much again while it concludes.
 #[derive(Clone, Debug)]
 pub struct Diagnoser {
     shape: Shape,
