@@ -1,5 +1,7 @@
 //! Writes a page with one of everything, made-up numbers: `cargo run -p isolux-report --example sample -- FOLDER`.
 
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to a terminal")]
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -87,7 +87,7 @@ fn short(value: f32, span: f32) -> String {
         return "0".to_owned();
     }
     if !(1e-3..1e6).contains(&value.abs().max(span)) {
-        return crate::chart::scientific(f64::from(value), 2);
+        return crate::chart::scientific(f64::from(value), 2).replace(".00×", "×");
     }
     let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(short(255.0, 255.0), "255");
         assert_eq!(short(0.5, 1.0), "0.5");
         assert_eq!(short(3.25, 2.5), "3.25");
-        assert_eq!(short(1e-9, 1e-9), "1.00×10⁻⁹");
+        assert_eq!(short(1e-9, 1e-9), "1×10⁻⁹");
         assert_eq!(short(-40.0, f32::INFINITY), "-40");
     }
 

@@ -18,6 +18,9 @@ const GAP_COLOUR: colours::Rgb = [255; 3];
 /// Palette index of the gap of a montage: the montage has 254 levels.
 const GAP_INDEX: u8 = 254;
 
+/// A row of a montage: its pictures, and the values of black and of white in all of them.
+pub type MontageRow = (Vec<Plane<f32>>, (f32, f32));
+
 /// The picture as PNG, one pixel per value: 255 levels of its colours over its range, values beyond the range in
 /// the colour of its end, NaN in a colour that the table does not hold (red on grey, grey on viridis).
 ///
@@ -39,7 +42,7 @@ pub fn encode(picture: &Picture) -> Result<Vec<u8>, ReportError> {
 ///
 /// # Errors
 /// [`ReportError::Montage`] when there is no picture, one without pixels, or one of another shape.
-pub fn montage(rows: &[(Vec<Plane<f32>>, (f32, f32))]) -> Result<Vec<u8>, ReportError> {
+pub fn montage(rows: &[MontageRow]) -> Result<Vec<u8>, ReportError> {
     let shape = common_shape(rows)?;
     let columns = rows.iter().map(|(planes, _)| planes.len()).max().unwrap_or(0);
     let canvas = Shape::new(rows.len() * (shape.height + GAP) - GAP, columns * (shape.width + GAP) - GAP);
@@ -102,7 +105,7 @@ fn palette(colours: Colours, levels: u8) -> Vec<u8> {
     palette.concat()
 }
 
-fn common_shape(rows: &[(Vec<Plane<f32>>, (f32, f32))]) -> Result<Shape, ReportError> {
+fn common_shape(rows: &[MontageRow]) -> Result<Shape, ReportError> {
     let mut planes = rows.iter().flat_map(|(planes, _)| planes);
     let refuse = |found: String| Err(ReportError::Montage { found });
     let Some(first) = planes.next().map(Plane::shape) else {

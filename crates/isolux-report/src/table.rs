@@ -67,7 +67,7 @@ fn put_cell(out: &mut String, cell: &Cell, numeric: bool, heads_row: bool) {
             shown(*value, *decimals)
         ),
         Cell::Missing(why) => {
-            let why = Escaped(why);
+            let why = Escaped(if why.is_empty() { "–" } else { why });
             put!(out, "<{open} class=\"{}missing\">{why}</{close}>", if numeric { "number " } else { "" });
         }
     }

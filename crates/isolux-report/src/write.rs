@@ -26,6 +26,8 @@ const PICTURES: &str = "pictures";
 /// As [`render`], and [`ReportError::FileName`] or [`ReportError::Write`] when the files cannot be written.
 pub fn write_report(page: &Page, folder: &Path, file_name: &str) -> Result<PathBuf, ReportError> {
     let files = files(page, file_name)?;
+    // The empty path of `Path::parent` means the current folder.
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |source| ReportError::Write { path, source }

@@ -1,5 +1,7 @@
 //! The files of a report.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail by panicking")]
+
 use std::fs;
 use std::path::Path;
 

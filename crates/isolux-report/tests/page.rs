@@ -1,5 +1,7 @@
 //! What a reader of the page can rely on, checked with an XML parser that shares no code with the crate.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail by panicking")]
+
 use std::collections::BTreeSet;
 
 use isolux::{Plane, Shape};

@@ -49,8 +49,8 @@ impl Format {
 
     const fn ticks(self) -> (usize, usize) {
         match self {
-            Self::Wide => (9, 6),
-            Self::Narrow => (6, 5),
+            Self::Wide => (7, 5),
+            Self::Narrow => (5, 4),
         }
     }
 }
@@ -88,7 +88,7 @@ impl Layout {
         let plot_width = (width - left - right).max(80.0);
         let y_lines = wrap(&chart.y.label, LETTERS, width);
         let x_lines = wrap(&chart.x.label, LETTERS, width);
-        let above = LINE * y_lines.len() as f64 + 6.0;
+        let above = LINE * y_lines.len() as f64 + 8.0;
         let mut layout = Self {
             width,
             height: 0.0,

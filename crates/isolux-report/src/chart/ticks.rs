@@ -1,7 +1,7 @@
 //! Where an axis has its ticks, and what they say.
 
 /// Decimal exponents between which a number is written out; beyond, as a power of ten.
-const PLAIN: std::ops::RangeInclusive<i32> = -4..=5;
+const PLAIN: std::ops::RangeInclusive<i32> = -3..=5;
 
 /// Ticks of an axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,9 +68,13 @@ pub(super) fn logarithmic(low: f64, high: f64, count: usize) -> Ticks {
     }
     let minor = if decades <= 6.0 { of(&[1, 2, 3, 4, 5, 6, 7, 8, 9]) } else { Vec::new() };
     let minor = minor.into_iter().filter(|tick| !chosen.contains(tick));
+    let plain = chosen.iter().all(|(_, power)| PLAIN.contains(power));
     Ticks {
         minor: minor.map(|(mantissa, power)| round_value(mantissa, power)).collect(),
-        labelled: chosen.iter().map(|&(m, power)| (round_value(m, power), round_label(m, power))).collect(),
+        labelled: chosen
+            .iter()
+            .map(|&(m, power)| (round_value(m, power), round_label(m, power, plain)))
+            .collect(),
     }
 }
 
@@ -79,12 +83,11 @@ fn round_value(mantissa: u32, power: i32) -> f64 {
     format!("{mantissa}e{power}").parse().unwrap_or(f64::NAN)
 }
 
-fn round_label(mantissa: u32, power: i32) -> String {
-    if PLAIN.contains(&power) {
-        return format!("{:.*}", power.min(0).unsigned_abs() as usize, round_value(mantissa, power));
-    }
-    match mantissa {
-        1 => format!("10{}", superscript(power)),
+fn round_label(mantissa: u32, power: i32, plain: bool) -> String {
+    match (mantissa, power) {
+        _ if plain => format!("{:.*}", power.min(0).unsigned_abs() as usize, round_value(mantissa, power)),
+        (_, 0) => mantissa.to_string(),
+        (1, _) => format!("10{}", superscript(power)),
         _ => format!("{mantissa}×10{}", superscript(power)),
     }
 }
@@ -159,6 +162,7 @@ mod tests {
         assert_eq!(labels(&logarithmic(0.5, 3.0, 6)), ["0.5", "0.7", "1", "2", "3"]);
         assert_eq!(labels(&logarithmic(1.02, 1.18, 3)), ["1.05", "1.10", "1.15"]);
         assert_eq!(labels(&logarithmic(1e-12, 1e12, 4)), ["10⁻⁷", "1", "10⁷"]);
+        assert_eq!(labels(&logarithmic(2e-5, 200.0, 4)), ["10⁻⁴", "10⁻²", "1", "10²"]);
     }
 
     #[test]
