@@ -99,8 +99,8 @@ fn table_charts_and_claims_say_what_straight_code_finds() {
                 ratios[index],
                 cv(&raw[4..]) / cv(&corrected[4..]),
                 corrected[0] / corrected[40],
-                noise_free[0] / noise_free[40],
                 corrected[last] / corrected[40],
+                noise_free[0] / noise_free[40],
             ];
             let found = row(variation, &format!("{short}, {name}"));
             assert_close(&found, &expected, ROUNDING, &format!("{scene} {name}"));

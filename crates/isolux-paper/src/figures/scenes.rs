@@ -111,8 +111,8 @@ fn table(sweeps: &[Sweep]) -> Table {
         "before / after",
         "from 1 ms on",
         &shortest,
-        "without noise",
         &longest,
+        "without noise",
     ];
     let row = |sweep: &Sweep, region: &Region| -> Vec<Cell> {
         let [raw, corrected] = sweep.variation(region, 0.0);
@@ -124,16 +124,16 @@ fn table(sweeps: &[Sweep]) -> Table {
             number(raw / corrected, 1),
             number(raw_above / corrected_above, 1),
             number(sweep.relative(&region.corrected, 0), 2),
-            number(sweep.relative(&region.noise_free, 0), 2),
             number(sweep.relative(&region.corrected, sweep.times_us.len() - 1), 2),
+            number(sweep.relative(&region.noise_free, 0), 2),
         ]
     };
     Table {
         id: "scenes-variation".to_owned(),
         caption: format!(
             "Variation of the means over {}: CV is standard deviation / mean; before / after, and the same of the times \
-             from 1 ms on. The last three columns compare the corrected mean at both ends with that at 8.2 ms; at the \
-             lower end also that of the amplitude without noise.",
+             from 1 ms on. Then the corrected mean at both ends relative to that at 8.2 ms, and the same of the amplitude \
+             without noise at the lower end.",
             sweeps.first().map_or_else(String::new, Sweep::span)
         ),
         columns: columns.map(str::to_owned).to_vec(),

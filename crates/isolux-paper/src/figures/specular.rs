@@ -51,14 +51,14 @@ pub(super) fn section(lab: &Lab) -> Result<Section, PaperError> {
             Block::Pictures(figure_13(&cases)),
             Block::Text(
                 "Percent is shown in both readings: the text of the paper says 90 % of the maximum, the caption of \
-                 its figure the upper 10 % of the pixels. The tables give the maximum that is left (max), how many \
-                 of all pixels are limited, of those of highlights (spots) and of those of the foreground (front), and \
-                 what is left of the foreground's structure: the ratio of the standard deviations (σ kept), the \
+                 its figure the upper 10 % of the pixels. The tables give how many pixels of the foreground are limited \
+                 (front), and what is left of its structure: the ratio of the standard deviations (σ kept), the \
                  correlation of the differences between neighbouring pixels (gradient), and the rank correlation of all \
-                 pixels (Kendall's τ-b), each after against before: 1 is everything. The last column is the brightest \
-                 matt value (99.9th percentile) as a share of the maximum: how much of the grey scale is left to the \
-                 scene itself. Pixels of highlights owe most of their light to them; many are still darker than the \
-                 board, and no single cut can reach those."
+                 pixels (Kendall's τ-b), each after against before: 1 is everything. Scale is the brightest matt value \
+                 (99.9th percentile) as a share of the maximum: how much of the grey scale is left to the scene itself. \
+                 Then the limited share of all pixels and of those of highlights (spots), and the maximum that is left \
+                 (max). Pixels of highlights owe most of their light to them; many are still darker than the board, and \
+                 no single cut can reach those."
                     .to_owned(),
             ),
             Block::Table(table("specular-raw", "The raw amplitude at 8.2 ms", &cases.raw)),
@@ -180,7 +180,7 @@ fn picture(id: &str, caption: &str, image: &Plane<f32>) -> Picture {
 
 fn table(id: &str, caption: &str, case: &Case) -> Table {
     let columns =
-        ["rule", "max, DN", "all, %", "spots, %", "front, %", "σ kept", "gradient", "τ", "scale, %"];
+        ["rule", "front, %", "σ kept", "gradient", "τ", "scale, %", "all, %", "spots, %", "max, DN"];
     let rows = RULES.iter().zip(&case.outcomes).map(|((name, _), outcome)| row(name, outcome));
     Table {
         id: id.to_owned(),
@@ -198,13 +198,13 @@ fn row(name: &str, outcome: &Outcome) -> Vec<Cell> {
     };
     vec![
         text(name),
-        number(outcome.maximum_dn, 0),
-        number(100.0 * outcome.limited, 2),
-        highlights,
         number(100.0 * outcome.foreground_limited, 2),
         number(outcome.structure.deviation_ratio, 3),
         number(outcome.structure.gradient_correlation, 3),
         number(outcome.structure.kendall_tau, 3),
         number(100.0 * outcome.range_used, 0),
+        number(100.0 * outcome.limited, 2),
+        highlights,
+        number(outcome.maximum_dn, 0),
     ]
 }
