@@ -27,7 +27,7 @@ impl Contest {
 pub(super) struct Contests {
     /// Desk and shelf, each in every selection.
     pub(super) still: Vec<Contest>,
-    /// Board and patches, each in every selection.
+    /// Board and patches, each with all frames and with the bright pixels.
     pub(super) distances: Vec<Contest>,
     /// Share of its linear amplitude that a pixel of the desk keeps at the longest time, 5 % quantile.
     pub(super) desk_kept: f64,
@@ -39,20 +39,27 @@ impl Contests {
     /// # Errors
     /// [`PaperError`], which no seed should bring about.
     pub(super) fn run(lab: &Lab) -> Result<Self, PaperError> {
-        let every = |scene, field: &Field, reference_us| {
-            let contest = |selection| {
-                Ok(Contest { scene, selection, standings: field.contest(selection, reference_us)? })
+        let every = |scene, field: &Field, selections: &[Selection], reference_us| {
+            let contest = |selection: &Selection| {
+                Ok(Contest {
+                    scene,
+                    selection: *selection,
+                    standings: field.contest(*selection, reference_us)?,
+                })
             };
-            Selection::ALL.into_iter().map(contest).collect::<Result<Vec<_>, PaperError>>()
+            selections.iter().map(contest).collect::<Result<Vec<_>, PaperError>>()
         };
         let reference_us = lab.calibration.reference.integration_time_us;
         let desk_field = Field::new(lab, "office-desk", &ALL)?;
-        let desk = every("desk", &desk_field, reference_us)?;
-        let shelf = every("shelf", &Field::new(lab, "office-shelf", &ALL)?, reference_us)?;
+        let desk = every("desk", &desk_field, &Selection::ALL, reference_us)?;
+        let shelf = every("shelf", &Field::new(lab, "office-shelf", &ALL)?, &Selection::ALL, reference_us)?;
+        // The slope pairs pixels of one integration time, so short times do not mix with the others.
+        let selections = [Selection::All, Selection::Bright];
         let mut board = Field::new(lab, "board-distances", &OVER_DISTANCE)?;
         board.label_centre();
-        let board = every("board", &board, None)?;
-        let patches = every("patches", &Field::new(lab, "patches", &OVER_DISTANCE)?, None)?;
+        let board = every("board", &board, &selections, None)?;
+        let patches = Field::new(lab, "patches", &OVER_DISTANCE)?;
+        let patches = every("patches", &patches, &selections, None)?;
         Ok(Self {
             still: desk.into_iter().chain(shelf).collect(),
             distances: board.into_iter().chain(patches).collect(),

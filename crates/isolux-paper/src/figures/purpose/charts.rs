@@ -28,15 +28,16 @@ pub(super) fn over_time(experiments: &Experiments) -> Vec<Chart> {
     let scenes = [("desk", &experiments.desk), ("shelf", &experiments.shelf)];
     let chart = |(metric, id, what): &(Metric, &str, &str)| {
         let series = scenes.iter().flat_map(|(scene, sweep)| {
-            series(metric, scene, &sweep.points, |point| point.conditions.integration_time_us / 1000.0)
+            curves(metric, scene, &sweep.points, |point| point.conditions.integration_time_us / 1000.0)
         });
+        let series: Vec<Series> = series.collect();
         Chart {
             id: format!("purpose-time-{id}"),
             caption: format!("{what}, two still scenes over the integration time, before and after."),
-            alt: alt(metric, &["integration time", "8.2 ms"]),
+            alt: alt(metric, "integration time", &series),
             x: axis("integration time in ms", Scale::Log),
             y: y_axis(metric),
-            series: series.collect(),
+            series,
             marks: vec![reference_mark(8.2, "tuned here")],
         }
     };
@@ -49,15 +50,16 @@ pub(super) fn over_distance(experiments: &Experiments) -> Vec<Chart> {
         let series = CHART_TIMES_US.iter().rev().flat_map(|time_us| {
             let points = at_time(&experiments.board.points, *time_us);
             let name = format!("{:.1} ms", time_us / 1000.0);
-            series(metric, &name, &points, |point| point.conditions.distance_m.unwrap_or(f64::NAN))
+            curves(metric, &name, &points, |point| point.conditions.distance_m.unwrap_or(f64::NAN))
         });
+        let series: Vec<Series> = series.collect();
         Chart {
             id: format!("purpose-distance-{id}"),
             caption: format!("{what}, the board over its distance, before and after."),
-            alt: alt(metric, &["distance", "0.75 m"]),
+            alt: alt(metric, "distance", &series),
             x: axis("distance in m", Scale::Linear),
             y: y_axis(metric),
-            series: series.collect(),
+            series,
             marks: vec![reference_mark(0.75, "tuned here (8.2 ms)")],
         }
     };
@@ -65,7 +67,7 @@ pub(super) fn over_distance(experiments: &Experiments) -> Vec<Chart> {
 }
 
 /// Dashed before, solid after.
-fn series(metric: &Metric, name: &str, points: &[Point], x: impl Fn(&Point) -> f64) -> [Series; 2] {
+fn curves(metric: &Metric, name: &str, points: &[Point], x: impl Fn(&Point) -> f64) -> [Series; 2] {
     [(Variant::Raw, Stroke::Dashed), (Variant::Standardized, Stroke::SolidPoints)].map(|(variant, stroke)| {
         Series {
             name: format!("{name}, {}", variant.name()),
@@ -83,12 +85,15 @@ fn y_axis(metric: &Metric) -> Axis {
     }
 }
 
-fn alt(metric: &Metric, [over, at]: &[&str; 2]) -> String {
-    format!(
-        "{} over the {over}: the raw curves are good near {at}, where everything was tuned; the numbers beside the \
-         standardized curves are in the table below.",
-        metric.name
-    )
+/// Lowest and highest value of each curve.
+fn alt(metric: &Metric, over: &str, series: &[Series]) -> String {
+    let ranges = series.iter().map(|series| {
+        let values = series.points.iter().map(|(_, value)| *value);
+        let (low, high) =
+            values.fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+        format!("{} from {low:.2} to {high:.2}", series.name)
+    });
+    format!("{} over the {over}: {}.", metric.name, ranges.collect::<Vec<_>>().join("; "))
 }
 
 fn reference_mark(at: f64, label: &str) -> Mark {

@@ -20,21 +20,18 @@ pub(super) struct Metric {
 }
 
 /// Overlap of the masks of a fixed threshold.
-pub(super) const THRESHOLD: Metric = share("fixed threshold, mask IoU", |figures| figures.threshold_iou);
+pub(super) const THRESHOLD: Metric = share("threshold IoU", |figures| figures.threshold_iou);
 /// F1 of Canny's edges.
-pub(super) const EDGES: Metric = share("fixed Canny, edge F1", |figures| figures.edge_f1);
+pub(super) const EDGES: Metric = share("Canny F1", |figures| figures.edge_f1);
 /// Overlap of the masks of Otsu's rule.
-pub(super) const OTSU: Metric = share("Otsu's rule, mask IoU", |figures| figures.otsu_iou);
+pub(super) const OTSU: Metric = share("Otsu IoU", |figures| figures.otsu_iou);
 /// How far Otsu's level moves.
-pub(super) const OTSU_DRIFT: Metric = Metric {
-    name: "Otsu's rule, drift of the level, |ln|",
-    of: |figures| figures.otsu_ratio.ln().abs(),
-    smaller_is_better: true,
-};
+pub(super) const OTSU_DRIFT: Metric =
+    Metric { name: "Otsu drift, |ln|", of: |figures| figures.otsu_ratio.ln().abs(), smaller_is_better: true };
 /// Repeatability of FAST corners.
-pub(super) const CORNERS: Metric = share("fixed FAST, repeatability", |figures| figures.repeatability);
+pub(super) const CORNERS: Metric = share("FAST repeated", |figures| figures.repeatability);
 /// Matched BRIEF descriptors.
-pub(super) const MATCHES: Metric = share("fixed FAST + BRIEF, matched", |figures| figures.matched);
+pub(super) const MATCHES: Metric = share("BRIEF matched", |figures| figures.matched);
 /// All of them, in the order of the tables.
 pub(super) const ALL: [Metric; 6] = [THRESHOLD, EDGES, OTSU, OTSU_DRIFT, CORNERS, MATCHES];
 
