@@ -229,7 +229,7 @@ fn the_vendors_scaling_is_recovered() {
 fn times_that_follow_the_material_tell_the_vendor_but_not_the_amplitude() {
     let frames = &render("patches-smoke")[..1];
     let bright = |frame: &Frame, index: usize| if raw(frame, index) > 600.0 { 125.0f32 } else { 5000.0 };
-    let vendor = |frame: &Frame, index: usize| raw(frame, index) * 5000.0 / bright(frame, index);
+    let vendor = move |frame: &Frame, index: usize| raw(frame, index) * 5000.0 / bright(frame, index);
     let told = Stream { vendor: Some(&vendor), time: Some(&bright), ..Stream::default() }.diagnose(frames);
     assert_eq!(told["diagnosis"]["time"]["unavailable"], "time_follows_material");
     let groups = &told["diagnosis"]["vendor_scaling"]["time_groups"];
