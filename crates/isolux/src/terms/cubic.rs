@@ -92,7 +92,7 @@ pub enum CubicError {
     },
     /// The multiplier is not positive, or beyond all reason, somewhere in its range.
     #[error(
-        "the cubic is {multiplier:.3e} at {distance_m:.3} m, a multiplier from 1e-9 to 1e9 expected: record more \
+        "the cubic is {multiplier:.3e} at {distance_m:.3} m, a multiplier from 1e-12 to 1e12 expected: record more \
          distances, evenly spread"
     )]
     Impossible {
@@ -175,7 +175,7 @@ impl Cubic {
         )?;
         let positive = check_multiplier(self.coefficients, self.valid_distance_m);
         let found = positive.map_or_else(|error| error.to_string(), |()| String::new());
-        require(found.is_empty(), "cubic.coefficients", found, "a multiplier from 1e-9 to 1e9 over its range")
+        require(found.is_empty(), "cubic.coefficients", found, "a multiplier from 1e-12 to 1e12 over its range")
     }
 }
 

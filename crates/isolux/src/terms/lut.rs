@@ -183,7 +183,7 @@ impl Lut {
         )?;
         let impossible = multipliers.iter().find(|multiplier| !MULTIPLIER_LIMITS.contains(*multiplier));
         let found = impossible.map_or_else(String::new, f64::to_string);
-        require(found.is_empty(), "lut.multiplier", found, "numbers from 1e-9 to 1e9")?;
+        require(found.is_empty(), "lut.multiplier", found, "numbers from 1e-12 to 1e12")?;
         let inside = times[0] <= min_us && min_us < max_us && max_us <= times[times.len() - 1];
         let range = format!("{min_us}..{max_us}");
         require(inside, "lut.valid_integration_time_us", range, "a range inside the sampled times")

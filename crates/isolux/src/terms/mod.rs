@@ -53,7 +53,7 @@ pub struct ParameterError {
 }
 
 /// Multipliers beyond these limits turn any amplitude into nothing or infinity; no fit gives them.
-pub(crate) const MULTIPLIER_LIMITS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+pub(crate) const MULTIPLIER_LIMITS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// Refuses `found` in `field` unless it is `fine`.
 pub(crate) fn require(
