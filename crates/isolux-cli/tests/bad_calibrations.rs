@@ -52,18 +52,18 @@ fn fields_that_are_unknown_newer_or_impossible() {
         ("/reference/distance_mm", json!(750), &["unknown field `distance_mm`"]),
         ("/terms/cubic/coefficients", json!([1, 2, 3]), &["array of length 4"]),
         ("/terms/lut/multiplier", json!("big"), &["invalid type"]),
-        (
-            "/reference/integration_time_us",
-            json!(-1),
-            &["reference.integration_time_us: -1", "a time in µs"],
-        ),
+        ("/reference/integration_time_us", json!(-1), &["reference.integration_time_us: -1", "a time in µs"]),
         ("/reference/integration_time_us", Value::Null, &["reference.integration_time_us"]),
         ("/reference/distance_m", json!(0), &["reference.distance_m: 0"]),
         ("/terms/lut/version", json!(2), &["lut.version: 2"]),
         ("/terms/cubic/version", json!(0), &["cubic.version: 0"]),
         ("/terms/lut/integration_time_us", json!([1.0]), &["lut.integration_time_us: 1 times"]),
         ("/terms/lut/integration_time_us", json!([1, 4, 2]), &["lut.integration_time_us", "increasing"]),
-        ("/terms/lut/integration_time_us", json!([0, 1, 2]), &["lut.integration_time_us", "increasing positive times"]),
+        (
+            "/terms/lut/integration_time_us",
+            json!([0, 1, 2]),
+            &["lut.integration_time_us", "increasing positive times"],
+        ),
         ("/terms/lut/multiplier", json!([1, 1]), &["lut.multiplier: 2 for 3"]),
         ("/terms/lut/multiplier", json!([1, 1, 0]), &["lut.multiplier", "numbers from 1e-12 to 1e12"]),
         (
@@ -74,7 +74,11 @@ fn fields_that_are_unknown_newer_or_impossible() {
         ("/terms/lut/valid_integration_time_us", json!([3000, 2000]), &["lut.valid_integration_time_us"]),
         ("/terms/cubic/valid_distance_m", json!([3, 0.5]), &["cubic.valid_distance_m: 3..0.5"]),
         ("/terms/cubic/valid_distance_m", json!([0, 1]), &["cubic.valid_distance_m"]),
-        ("/terms/cubic/coefficients", json!([-1, 0, 0, 0]), &["cubic.coefficients", "a multiplier from 1e-12 to 1e12"]),
+        (
+            "/terms/cubic/coefficients",
+            json!([-1, 0, 0, 0]),
+            &["cubic.coefficients", "a multiplier from 1e-12 to 1e12"],
+        ),
         (
             "/noise_floor",
             json!({"amplitude_sd_dn": -1, "integration_time_us": 1000, "low_signal_below_dn": 5}),

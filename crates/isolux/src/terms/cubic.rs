@@ -175,7 +175,12 @@ impl Cubic {
         )?;
         let positive = check_multiplier(self.coefficients, self.valid_distance_m);
         let found = positive.map_or_else(|error| error.to_string(), |()| String::new());
-        require(found.is_empty(), "cubic.coefficients", found, "a multiplier from 1e-12 to 1e12 over its range")
+        require(
+            found.is_empty(),
+            "cubic.coefficients",
+            found,
+            "a multiplier from 1e-12 to 1e12 over its range",
+        )
     }
 }
 
