@@ -17,6 +17,12 @@ impl PositiveQuantiles {
         Self { bins: vec![0; BINS], candidates: Vec::new() }
     }
 
+    /// Makes room for images of `pixels`, so that no image allocates, however its values lie.
+    pub(crate) fn reserve(&mut self, pixels: usize) {
+        self.candidates.clear();
+        self.candidates.reserve_exact(pixels);
+    }
+
     /// For each fraction (clamped to 0..=1) the value at rank `floor(fraction · (count − 1))` of the positive finite
     /// values, and their count; all other values are passed over. `None` when there are none.
     pub(crate) fn at<const N: usize>(

@@ -88,6 +88,7 @@ impl Standardized {
     fn reshape(&mut self, shape: Shape) {
         self.amplitude.reshape(shape, f32::NAN);
         self.flags.reshape(shape, PixelFlags::empty());
+        self.quantiles.reserve(shape.pixels());
     }
 }
 

@@ -1,0 +1,70 @@
+//! Applying a chain allocates nothing after the first frame, whatever the frames hold.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use isolux::specular::{PercentRule, SigmaRule};
+use isolux::standardize::SpecularStep;
+use isolux::{
+    Channels, Choice, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized, Standardizer,
+};
+
+/// Counts the allocations of each thread.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call is handed on to the system's allocator unchanged; counting allocates nothing.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promises are those that `System` asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A frame whose values spread the more the larger `spread` is; at 0 they are all the same.
+fn frame(shape: Shape, spread: usize, per_pixel: bool) -> Frame {
+    let mut frame = Frame::new(shape);
+    frame.amplitude =
+        Plane::from_fn(shape, |row, column| 100.0 + ((row * 31 + column * 17) % (1 + spread)) as f32);
+    frame.distance_m = Some(Plane::filled(shape, 1.5));
+    frame.integration_time_us = match per_pixel {
+        true => IntegrationTime::PerPixel(Plane::from_fn(shape, |row, column| (1 + row + column) as f32)),
+        false => IntegrationTime::PerFrame(4000.0),
+    };
+    frame.flag_amplitude(None);
+    frame
+}
+
+#[test]
+fn nothing_is_allocated_per_frame() {
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let percent = SpecularStep::Limit(SpecularRule::Percent(PercentRule::Quantile(0.9)));
+    let sigma = SpecularStep::Limit(SpecularRule::Sigma(SigmaRule::default()));
+    for specular in [None, Some(SpecularStep::None), Some(percent), Some(sigma)] {
+        let choice = Choice { specular, ..Choice::default() };
+        let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
+        let shape = Shape::new(48, 64);
+        let frames: Vec<Frame> = [(900, false), (0, false), (3, true), (5000, false), (0, true)]
+            .map(|(spread, per_pixel)| frame(shape, spread, per_pixel))
+            .into();
+        let mut out = Standardized::new(shape);
+        standardizer.apply(&frames[0], &mut out).unwrap();
+        let before = ALLOCATIONS.get();
+        for frame in &frames {
+            standardizer.apply(frame, &mut out).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{specular:?}");
+    }
+}
