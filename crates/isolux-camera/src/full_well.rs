@@ -88,7 +88,7 @@ impl FullWellTable {
     pub(crate) fn kept_electrons(&self, received_electrons: f64) -> f64 {
         let position = received_electrons * self.intervals_per_electron;
         let index = position as usize;
-        match self.kept_electrons.get(index..index + 2) {
+        match self.kept_electrons.get(index..index.saturating_add(2)) {
             Some(&[low, high]) => low + (high - low) * (position - index as f64),
             _ => self.clip_electrons,
         }

@@ -89,8 +89,8 @@ pub(crate) struct CalibrateArgs {
     /// Distance at which amplitudes stay as they are, m
     #[arg(long, default_value_t = REFERENCE_DISTANCE_M, value_parser = positive)]
     pub(crate) reference_distance_m: f64,
-    /// Side of the central measurement window of distance sweeps, pixels
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
+    /// Side of the central measurement window of distance sweeps, pixels; less than 6 do not tell the noise
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(6..))]
     pub(crate) window: u16,
     /// Frames to drop after each change of the integration time
     #[arg(long, default_value_t = 0)]
@@ -158,7 +158,7 @@ pub(crate) struct StepArgs {
     /// Step for highlights [default: histogram]
     #[arg(long, value_enum)]
     pub(crate) specular: Option<SpecularArg>,
-    /// Pixels that an intensity needs, for --specular histogram [default: max(2, 0.0005 of the valid pixels)]
+    /// Pixels that a value needs, for --specular histogram [default: max(2, 0.0005 of the valid pixels)]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) specular_occurrences: Option<u32>,
     /// Standard deviations above the mean, for --specular sigma [default: 4]
@@ -325,7 +325,7 @@ pub(crate) enum DistanceArg {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SpecularArg {
-    /// Limit at the highest intensity with enough pixels
+    /// Limit at the highest value with enough pixels
     Histogram,
     /// Limit at mean + k standard deviations
     Sigma,

@@ -59,8 +59,7 @@ pub(crate) fn steps() -> ProgressBar {
     spinner
 }
 
-/// Lays out rows in columns, two spaces apart; the first row is a header where `header` is set. The first column
-/// is aligned left, all others right.
+/// Lays out rows in columns, two spaces apart. The first column is aligned left, all others right.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width =

@@ -30,6 +30,7 @@ struct Block {
 /// Watches for movement between frames of different integration times.
 #[derive(Clone, Debug, Default)]
 pub struct MotionWatch {
+    shape: Option<Shape>,
     runs: Vec<(f64, Vec<Block>)>,
 }
 
@@ -49,6 +50,9 @@ impl MotionWatch {
             return;
         };
         let shape = frame.shape();
+        if *self.shape.get_or_insert(shape) != shape {
+            return;
+        }
         let block = |window: Window| {
             let valid = |i: &usize| frame.is_valid(*i) && distance_m.values()[*i] > 0.0;
             let value = |i: usize| if valid(&i) { f64::from(distance_m.values()[i]) } else { f64::NAN };

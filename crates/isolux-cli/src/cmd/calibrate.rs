@@ -63,13 +63,16 @@ pub(crate) fn fit(
         ));
     }
     let camera = camera.or_else(|| cameras.into_iter().next());
-    calibrate::fit(settings, camera, curves, decays).map_err(|error| match error {
-        // Pooled from all distance sweeps, so the error knows none of them.
-        CalibrateError::Cubic(source) => {
-            let names: Vec<_> = distance_sweeps.iter().map(|path| path.display().to_string()).collect();
-            Failure::data(format!("distance sweep `{}`: {source}", names.join("`, `")))
+    calibrate::fit(settings, camera, curves, decays).map_err(|error| {
+        error.warnings().iter().for_each(console::warn);
+        match error {
+            // Pooled from all distance sweeps, so the error knows none of them.
+            CalibrateError::Cubic { source, .. } => {
+                let names: Vec<_> = distance_sweeps.iter().map(|path| path.display().to_string()).collect();
+                Failure::data(format!("distance sweep `{}`: {source}", names.join("`, `")))
+            }
+            other => Failure::data(other),
         }
-        other => Failure::data(other),
     })
 }
 

@@ -21,6 +21,11 @@ use crate::{evaluation_page, frames};
 
 /// Marks a folder as a demo, which the next one may replace.
 const FIGURES: &str = "demo.json";
+/// What [`FIGURES`] names as its author.
+const PROGRAM: &str = "isolux demo";
+/// Everything in a demo's folder, besides the pictures.
+const WRITTEN: [&str; 7] =
+    ["report.html", "data", "pictures", "recordings", "standardized", "CAMERA.json", FIGURES];
 /// The sweeps that the calibration is fitted on.
 const EXPOSURE_SWEEP: &str = "wall-sweep-smoke";
 const DISTANCE_SWEEP: &str = "board-distances-smoke";
@@ -65,8 +70,7 @@ const EXHIBITS: [Exhibit; 3] = [
 
 pub(crate) fn run(args: &DemoArgs) -> Outcome {
     let io = |error: std::io::Error| Failure::data(format!("cannot write `{}`: {error}", args.dir.display()));
-    let is_demo = args.dir.join(FIGURES).is_file();
-    if args.dir.exists() && !is_demo {
+    if args.dir.exists() && !is_demo(&args.dir) {
         let message = "found something else than an earlier demo, a new folder expected: name another";
         return Err(Failure::usage(format!("`{}`: {message}", args.dir.display())));
     }
@@ -75,15 +79,47 @@ pub(crate) fn run(args: &DemoArgs) -> Outcome {
     let demo = Demo { folder: staging.path().to_owned(), seed: args.seed };
     let figures = demo.make()?;
     fs::write(demo.folder.join(FIGURES), format!("{figures:#}\n")).map_err(io)?;
-    if is_demo {
-        fs::remove_dir_all(&args.dir).map_err(io)?;
-    }
-    fs::rename(staging.keep(), &args.dir).map_err(io)?;
+    replace(&args.dir, staging).map_err(io)?;
     let dir = args.dir.display();
     console::print(format!(
         "\nIn {dir}: report.html, recordings/, CAMERA.json, standardized/, before-after-*.png (top: raw, bottom: \
          standardized), {FIGURES}\nThe same with your own recording: isolux info REC"
     ))
+}
+
+/// True for a folder that a demo wrote, with nothing in it but what a demo writes: only that may be replaced.
+fn is_demo(folder: &Path) -> bool {
+    let text = fs::read_to_string(folder.join(FIGURES)).unwrap_or_default();
+    let written: Value = serde_json::from_str(&text).unwrap_or_default();
+    let holds_only = |folder: &Path, known: &dyn Fn(&str) -> bool| {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.file_name()).all(|name| name.to_str().is_some_and(known))
+    };
+    let scenes = |name: &str| {
+        [EXPOSURE_SWEEP, DISTANCE_SWEEP].contains(&name)
+            || EXHIBITS.iter().any(|exhibit| exhibit.scene == name)
+    };
+    written["program"] == PROGRAM
+        && holds_only(folder, &|name| WRITTEN.contains(&name) || name.starts_with("before-after-"))
+        && ["recordings", "standardized"].iter().all(|inside| holds_only(&folder.join(inside), &scenes))
+}
+
+/// Puts the finished demo in its place. An earlier one goes only when the new one is there.
+fn replace(folder: &Path, finished: tempfile::TempDir) -> std::io::Result<()> {
+    if !folder.exists() {
+        return fs::rename(finished.keep(), folder);
+    }
+    let parent = finished.path().parent().unwrap_or(Path::new("."));
+    let aside = staging_folder(parent)?;
+    let earlier = aside.path().join("earlier");
+    fs::rename(folder, &earlier)?;
+    fs::rename(finished.path(), folder).inspect_err(|_| {
+        // The first error is the one to tell.
+        let _ = fs::rename(&earlier, folder);
+    })?;
+    // The folder is no temporary one any more: nothing is left to remove.
+    let _ = finished.keep();
+    Ok(())
 }
 
 /// A temporary folder with the permissions that a folder usually has; those of temporary ones are narrower.
@@ -129,7 +165,7 @@ impl Demo {
         }
         isolux_report::write_report(&self.page(sections), &self.folder, "report.html")
             .map_err(Failure::data)?;
-        Ok(json!({"seed": self.seed, "method": "paper", "scenes": figures}))
+        Ok(json!({"program": PROGRAM, "seed": self.seed, "method": "paper", "scenes": figures}))
     }
 
     /// Standardizes and evaluates one scene with the paper's method, and pictures it.
@@ -170,7 +206,7 @@ impl Demo {
         Page {
             title: "isolux demo".to_owned(),
             lead: "A simulated SR-3100, calibrated on a wall over integration times and a board over distances, then \
-                   standardized with the paper's method. Pixels flagged as too dark or saturated are left out of the \
+                   standardized with the paper's method. Pixels flagged as too dark are left out of the \
                    figures, before and after."
                 .to_owned(),
             sections,

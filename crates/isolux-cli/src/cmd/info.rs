@@ -33,8 +33,8 @@ struct Report {
     integration_time_per_pixel: bool,
     amplitude_dn: Option<Spread>,
     distance_m: Option<Spread>,
-    invalid_amplitude_share: f64,
-    saturated_share: f64,
+    invalid_amplitude_share: Option<f64>,
+    saturated_share: Option<f64>,
     invalid_distance_share: Option<f64>,
     advice: Vec<String>,
 }
@@ -68,6 +68,7 @@ fn report(recording: &mut dyn Recording) -> Outcome<Report> {
     let sample = sample(recording, &metadata)?;
     let times: Vec<f64> = sample.times.iter().map(|bits| f64::from_bits(*bits)).collect();
     let share = |count: usize| count as f64 / sample.pixels.max(1) as f64;
+    let has_amplitude = metadata.available.contains(Channels::AMPLITUDE);
     Ok(Report {
         recording: metadata.path.display().to_string(),
         camera: metadata.info.camera.clone(),
@@ -79,8 +80,8 @@ fn report(recording: &mut dyn Recording) -> Outcome<Report> {
         advice: advice(&metadata, &times, sample.per_pixel),
         integration_times_us: times,
         integration_time_per_pixel: sample.per_pixel,
-        invalid_amplitude_share: share(sample.invalid),
-        saturated_share: share(sample.saturated),
+        invalid_amplitude_share: has_amplitude.then(|| share(sample.invalid)),
+        saturated_share: has_amplitude.then(|| share(sample.saturated)),
         invalid_distance_share: metadata
             .available
             .contains(Channels::DISTANCE)
@@ -238,11 +239,10 @@ fn describe(report: &Report) -> String {
     if let Some(amplitude) = &report.amplitude_dn {
         lines.push(format!("amplitude in DN   {}", spread(amplitude, 1)));
     }
-    lines.push(format!(
-        "                  {} invalid, {} saturated, {sampled}",
-        percent(report.invalid_amplitude_share),
-        percent(report.saturated_share)
-    ));
+    if let (Some(invalid), Some(saturated)) = (report.invalid_amplitude_share, report.saturated_share) {
+        let (invalid, saturated) = (percent(invalid), percent(saturated));
+        lines.push(format!("                  {invalid} invalid, {saturated} saturated, {sampled}"));
+    }
     if let Some(distance) = &report.distance_m {
         lines.push(format!("distance in m     {}", spread(distance, 3)));
     }

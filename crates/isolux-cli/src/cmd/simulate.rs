@@ -111,7 +111,7 @@ pub(crate) fn record(simulation: &Simulation, extras: Extras, output: &Path, ove
         }
     }
     progress.finish_and_clear();
-    Ok(writer.finish(&describe(simulation))?)
+    Ok(writer.finish(&describe(simulation, extras))?)
 }
 
 fn push(writer: &mut RecordingWriter, simulated: &SimulatedFrame, extras: Extras) -> Outcome {
@@ -142,12 +142,13 @@ fn push(writer: &mut RecordingWriter, simulated: &SimulatedFrame, extras: Extras
     Ok(())
 }
 
-fn describe(simulation: &Simulation) -> RecordingInfo {
+fn describe(simulation: &Simulation, extras: Extras) -> RecordingInfo {
     let model = simulation.model();
     let mut info = RecordingInfo {
         camera: Some(format!("{} (simulated)", model.name)),
         modulation_frequency_hz: Some(model.modulation_frequency_hz),
         saturated_amplitude: model.saturated_amplitude,
+        saturated_phase_sample: extras.phase_samples.then(|| model.clip_dn() as f32),
         intrinsics: Some(model.intrinsics.into()),
         ..RecordingInfo::default()
     };

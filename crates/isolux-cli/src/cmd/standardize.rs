@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use isolux::standardize::FrameSummary;
-use isolux::{Calibration, Frame, PixelFlags, Standardized, Standardizer};
+use isolux::{Calibration, Frame, PixelFlags, Reference, Standardized, Standardizer};
 use isolux_io::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -115,8 +115,8 @@ pub(crate) fn standardize(
         }
     }
     progress.finish_and_clear();
-    if summary.time_refused == summary.pixels {
-        let message = "every pixel's integration time is above the calibrated range or unknown, a time inside \
+    if summary.valid == 0 && summary.time_refused > 0 {
+        let message = "every measured pixel's integration time is above the calibrated range or unknown, a time inside \
                        it expected: record within it, calibrate further, or use --time linear";
         return Err(Failure::data(format!("`{}`: {message}", metadata.path.display())));
     }
@@ -207,7 +207,7 @@ fn record(
             "program": concat!("isolux ", env!("CARGO_PKG_VERSION")),
             "input": input.display().to_string(),
             "calibrated_camera": calibration.map(|c| c.camera.clone()),
-            "reference": calibration.map(|c| c.reference),
+            "reference": calibration.map_or_else(Reference::default, |c| c.reference),
             "steps": steps(standardizer),
             "notes": notes,
             "flag_bits": legend,

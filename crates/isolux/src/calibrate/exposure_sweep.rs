@@ -130,6 +130,8 @@ impl ExposureSweep {
                 history.ever_other = true;
             } else if amplitude == 0.0 {
                 sums.zero += 1;
+            } else {
+                history.ever_other = true;
             }
         }
         sums
@@ -273,14 +275,14 @@ mod tests {
     #[test]
     fn dead_and_invalid_pixels_never_count_and_collapsed_ones_count_as_zero() {
         let frames = [
-            frame(100.0, &[0.0, 2.0, 4.0, f32::NAN]),
-            frame(200.0, &[0.0, 4.0, 8.0, 6.0]),
-            frame(300.0, &[0.0, 6.0, 0.0, 1000.0]),
+            frame(100.0, &[0.0, 2.0, 4.0, f32::NAN, f32::NAN]),
+            frame(200.0, &[0.0, 4.0, 8.0, 6.0, f32::NAN]),
+            frame(300.0, &[0.0, 6.0, 0.0, 1000.0, f32::NAN]),
         ];
         let curve = curve(&CalibrateSettings::default(), &frames);
         let means: Vec<f64> = curve.samples.iter().map(|s| s.mean_amplitude_dn).collect();
         assert_eq!(means, [3.0, 6.0, 3.0]);
-        assert_eq!(curve.saturated_share, [0.0, 0.0, 0.25]);
+        assert_eq!(curve.saturated_share, [0.0, 0.0, 0.2]);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::calibration::{Calibration, NoiseFloor, Reference};
 use crate::frame::IntegrationTime;
 use crate::plane::ShapeError;
 use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
-use crate::terms::lut::{ExposureSample, LutError};
+use crate::terms::lut::{ExposureSample, LutAnswer, LutError};
 use crate::terms::{Cubic, Lut};
 
 /// What the user decides about a calibration.
@@ -86,10 +86,28 @@ pub enum CalibrateError {
         recording: String,
         /// Why.
         source: LutError,
+        /// What was left out before, and why.
+        warnings: Vec<FitWarning>,
     },
     /// The cubic could not be fitted.
-    #[error("distance sweep: {0}")]
-    Cubic(#[from] CubicError),
+    #[error("distance sweep: {source}")]
+    Cubic {
+        /// Why.
+        source: CubicError,
+        /// What was left out before, and why.
+        warnings: Vec<FitWarning>,
+    },
+}
+
+impl CalibrateError {
+    /// What was left out before the fit failed: often the reason.
+    #[must_use]
+    pub fn warnings(&self) -> &[FitWarning] {
+        match self {
+            Self::Lut { warnings, .. } | Self::Cubic { warnings, .. } => warnings,
+            _ => &[],
+        }
+    }
 }
 
 /// What the fits found, for the user to judge them.
@@ -125,22 +143,21 @@ pub fn fit(
         calibration.noise_floor =
             floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
     }
+    if calibration.terms.lut.is_none() {
+        // Nothing says what the amplitudes of another time would be.
+        calibration.reference.integration_time_us = None;
+    }
     let mut decays = Vec::new();
     if !distance_sweeps.is_empty() {
         let (cubic, uses) = fit_cubic(settings, distance_sweeps, &mut warnings)?;
         decays = uses;
-        if calibration.terms.lut.is_none()
-            && decays.iter().all(|(decay, _)| decay.integration_time_us.is_none())
-        {
-            calibration.reference.integration_time_us = None;
-        }
         calibration.terms.cubic = Some(cubic);
     }
     Ok((calibration, FitReport { exposure_curves, decays, warnings }))
 }
 
-/// One table per sweep, then their geometric mean at each time: sweeps at unlike walls differ by a factor that
-/// the normalization at the reference time has already taken out.
+/// One table per sweep, then their geometric mean. Sweeps at unlike walls differ by a factor, which the normalization
+/// at the reference time takes out, and in their compression, which shows in the residual.
 fn fit_lut(
     settings: &CalibrateSettings,
     curves: &[ExposureCurve],
@@ -150,8 +167,10 @@ fn fit_lut(
         settings.reference.integration_time_us.unwrap_or(crate::calibration::REFERENCE_TIME_US);
     let mut tables = Vec::new();
     for curve in curves {
-        let lut = Lut::fit(&curve.samples, reference_us)
-            .map_err(|source| CalibrateError::Lut { recording: curve.source.recording.clone(), source })?;
+        let lut = Lut::fit(&curve.samples, reference_us).map_err(|source| {
+            let warnings = curve.warnings.clone();
+            CalibrateError::Lut { recording: curve.source.recording.clone(), source, warnings }
+        })?;
         warnings.extend(curve.warnings_for(&lut));
         tables.push(lut);
     }
@@ -159,8 +178,10 @@ fn fit_lut(
         [single] => single.clone(),
         several => {
             let merged = merge_samples(several);
-            Lut::fit(&merged, reference_us)
-                .map_err(|source| CalibrateError::Lut { recording: "(all together)".into(), source })?
+            Lut::fit(&merged, reference_us).map_err(|source| {
+                let warnings = warnings.clone();
+                CalibrateError::Lut { recording: "(all together)".into(), source, warnings }
+            })?
         }
     };
     lut.fitted_on = curves.iter().map(|curve| curve.source.clone()).collect();
@@ -168,27 +189,26 @@ fn fit_lut(
     Ok(lut)
 }
 
-/// Mean curve of several tables, normalized to 1 at the reference, up to the lowest of their ends.
+/// Mean curve of several tables, 1 at the reference, at all their times that every one of them covers. Each is
+/// interpolated there, so that sweeps over unlike times do not take turns.
 fn merge_samples(tables: &[Lut]) -> Vec<ExposureSample> {
-    let end = tables.iter().map(|lut| lut.valid_integration_time_us[1]).fold(f64::INFINITY, f64::min);
-    let mut points: Vec<(f64, f64)> = tables
-        .iter()
-        .flat_map(|lut| lut.integration_time_us.iter().copied().zip(lut.multiplier.iter().map(|m| -m.ln())))
-        .filter(|(time, _)| *time <= end)
-        .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|group| {
-            let mean = group.iter().map(|(_, log)| log).sum::<f64>() / group.len() as f64;
-            let spread = crate::terms::root_mean_square(group.iter().map(|(_, log)| log - mean));
-            ExposureSample {
-                integration_time_us: group[0].0,
-                mean_amplitude_dn: mean.exp(),
-                frame_spread: spread.unwrap_or(0.0),
-            }
-        })
-        .collect()
+    let mut times: Vec<f64> = tables.iter().flat_map(|lut| lut.integration_time_us.iter().copied()).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let sample = |integration_time_us: f64| {
+        let logs: Option<Vec<f64>> = tables
+            .iter()
+            .map(|lut| match lut.at(integration_time_us) {
+                LutAnswer::Inside(multiplier) => Some(-multiplier.ln()),
+                LutAnswer::Below(_) | LutAnswer::Refused => None,
+            })
+            .collect();
+        let logs = logs?;
+        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+        let spread = crate::terms::root_mean_square(logs.iter().map(|log| log - mean)).unwrap_or(0.0);
+        Some(ExposureSample { integration_time_us, mean_amplitude_dn: mean.exp(), frame_spread: spread })
+    };
+    times.into_iter().filter_map(sample).collect()
 }
 
 fn fit_cubic(
@@ -203,7 +223,8 @@ fn fit_cubic(
         sources.push(sweep.source);
         decays.extend(sweep.decays);
     }
-    let (mut cubic, uses) = Cubic::fit(&decays, settings.reference.distance_m)?;
+    let (mut cubic, uses) = Cubic::fit(&decays, settings.reference.distance_m)
+        .map_err(|source| CalibrateError::Cubic { source, warnings: found.clone() })?;
     found.extend(warning::about_decays(&decays, &uses));
     cubic.fitted_on = sources;
     cubic.warnings = found.iter().map(ToString::to_string).collect();

@@ -56,7 +56,10 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
         return None;
     }
     let mean = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>() / count as f64;
-    let deviation = |values: &[f64]| noise::spatial(values.chunks(window.width)).unwrap_or(0.0);
+    let deviation = |values: &[f64]| {
+        // Noise that cannot be told is no reason to trust.
+        noise::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
+    };
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
     let distance_sd_m = deviation(&distances);
     Some(Measurement {

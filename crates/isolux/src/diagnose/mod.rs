@@ -115,10 +115,8 @@ pub struct Diagnoser {
 /// Which channels were there.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
-    time: bool,
     time_per_pixel: bool,
     distance: bool,
-    target: bool,
     vendor: bool,
     phase_samples: bool,
 }
@@ -172,10 +170,8 @@ impl Diagnoser {
 
     fn see(&mut self, frame: &Frame) {
         self.seen.distance |= frame.distance_m.is_some();
-        self.seen.target |= frame.target.is_some();
         self.seen.vendor |= frame.vendor_amplitude.is_some();
         self.seen.phase_samples |= frame.phase_samples.is_some();
-        self.seen.time |= frame.integration_time_us != IntegrationTime::Unknown;
         self.seen.time_per_pixel |= matches!(frame.integration_time_us, IntegrationTime::PerPixel(_));
     }
 

@@ -53,6 +53,64 @@ fn a_logarithm_is_seen_as_compression() {
     assert!(compressed, "{:?}", diagnosis.findings);
 }
 
+/// What `law(eq. 1, number)` is told to be, eq. 1 spanning a factor of 3 in space and of 8 in time; `number` is
+/// uniform in 0.5..1.5 and has nothing to do with it.
+fn against_phase_samples(law: impl Fn(f64, f64) -> f64) -> (Vec<Finding>, Diagnosis) {
+    let at = |(number, time_us): (usize, f64)| {
+        let level = |row, column| 0.2 * time_us * material(row, column);
+        let mut frame = frame(SHAPE, |row, column| {
+            law(level(row, column), material(row + SHAPE.height * (1 + number), column))
+        });
+        // Eq. 1 of (a, 0, -a, 0) is proportional to a.
+        let bin = |share: f64| Plane::from_fn(SHAPE, |row, column| (share * level(row, column)) as f32);
+        frame.phase_samples = Some([1.0, 0.0, -1.0, 0.0].map(bin));
+        frame.integration_time_us = IntegrationTime::PerFrame(time_us);
+        frame
+    };
+    let diagnosis = diagnose(&TIMES_US.into_iter().enumerate().map(at).collect::<Vec<_>>());
+    let of_phase_samples = |finding: &&Finding| {
+        matches!(finding, Finding::EqualsPhaseSamples | Finding::Gamma { from_phase_samples: true, .. })
+    };
+    (diagnosis.findings.iter().filter(of_phase_samples).cloned().collect(), diagnosis)
+}
+
+#[test]
+fn what_its_phase_samples_do_not_explain_is_not_said_to_follow_from_them() {
+    assert_eq!(against_phase_samples(|level, _| 3.0 * level).0, [Finding::EqualsPhaseSamples]);
+    let (found, _) = against_phase_samples(|level, _| level.sqrt());
+    // Amplitudes are f32: 6e-8 relative, over a factor of 24.
+    assert!(matches!(found[..], [Finding::Gamma { gamma, .. }] if (gamma - 0.5).abs() < 1e-6), "{found:?}");
+    // Steps of 1 DN at 50 DN and more are 0.6 % and less: still the same image.
+    assert_eq!(against_phase_samples(|level, _| level.round()).0, [Finding::EqualsPhaseSamples]);
+
+    // A factor of 0.5 to 1.5 by chance, and an image of something else.
+    let laws: [&dyn Fn(f64, f64) -> f64; 2] = [&|level, number| level * number, &|_, number| 300.0 * number];
+    for law in laws {
+        let (found, diagnosis) = against_phase_samples(law);
+        assert!(found.is_empty(), "{found:?}");
+        // Uniform numbers in 0.5..1.5 scatter by about 30 % around their median.
+        assert!(diagnosis.phase_samples.unwrap().residual > 0.2);
+    }
+}
+
+#[test]
+fn wide_intervals_and_missing_exponents_are_no_equality() {
+    let (_, diagnosis) = against_phase_samples(|level, _| level);
+    let exact = diagnosis.phase_samples.unwrap();
+    let wide = |value: f64| Estimate { value, low_95: value - 1.0, high_95: value + 1.0 };
+    let mut uncertain = vec![exact.clone(); 4];
+    uncertain[0].gamma = None;
+    uncertain[1].gamma = Some(wide(1.0));
+    uncertain[2].time = Ok(wide(0.0));
+    if let Ok(radial) = &mut uncertain[3].radial {
+        radial.corner_factor = wide(1.0);
+    }
+    assert!(rules::equals_phase_samples(&exact).is_some());
+    for scaling in &uncertain {
+        assert_eq!(rules::equals_phase_samples(scaling), None, "{scaling:?}");
+    }
+}
+
 #[test]
 fn what_was_not_recorded_is_not_told() {
     let unknown = frame(SHAPE, material);

@@ -9,6 +9,8 @@ use super::scaling::Scaling;
 
 /// A factor within this of 1 at the corner is none.
 const EVEN: f64 = 0.1;
+/// An interval that reaches into that margin must not leave this multiple of it, as of a [`State`].
+const WIDEST: f64 = 3.0;
 /// A root mean square residual of ln(vendor/raw) beyond this: the law is not the vendor's.
 const LOOSE: f64 = 0.15;
 
@@ -25,8 +27,9 @@ pub struct VendorFinding {
     pub distance: Option<State>,
     /// Factor at r = 1 relative to the principal point; `None` where it is not told.
     pub corner_factor: Option<f64>,
-    /// True when that factor is 1 within its interval and 10 %.
-    pub even: bool,
+    /// True when that factor is 1 within its interval and 10 %; `None` where it is not told, or the interval is too
+    /// wide to say so.
+    pub even: Option<bool>,
     /// Root mean square residual of ln(vendor/raw).
     pub residual_rms: f64,
     /// False when the residual is so large that the scaling is something else than powers.
@@ -48,12 +51,20 @@ impl From<&Scaling> for VendorFinding {
             distance_exponent: distance.map(|distance| distance.value),
             distance: distance.map(|distance| State::of_distance(minus(distance))),
             corner_factor: corner.map(|corner| corner.value),
-            even: corner.is_none_or(|corner| corner.reaches(1.0 - EVEN, 1.0 + EVEN)),
+            even: corner.and_then(is_even),
             residual_rms: scaling.residual_rms,
             is_powers: scaling.residual_rms < LOOSE,
             exact: scaling.exact,
         }
     }
+}
+
+/// Is this factor none? `None` where its interval allows both.
+fn is_even(corner: Estimate) -> Option<bool> {
+    if !corner.reaches(1.0 - EVEN, 1.0 + EVEN) {
+        return Some(false);
+    }
+    corner.lies_within(1.0 - WIDEST * EVEN, 1.0 + WIDEST * EVEN).then_some(true)
 }
 
 impl VendorFinding {
@@ -71,7 +82,7 @@ impl VendorFinding {
         };
         tell("integration time", self.time);
         tell("distance", self.distance);
-        words.extend((!self.even).then(|| "has a radial term".to_owned()));
+        words.extend((self.even == Some(false)).then(|| "has a radial term".to_owned()));
         if words.is_empty() {
             words.push("has no effect that could be told".to_owned());
         }
@@ -93,19 +104,38 @@ impl fmt::Display for VendorFinding {
         parts.extend(self.time_exponent.map(|exponent| match self.time {
             Some(State::Present) => format!("takes the integration time out (t^{exponent:.2})"),
             Some(State::Removed) => format!("leaves the integration time in (t^{exponent:.2})"),
+            Some(State::Undetermined) => format!("has an uncertain exponent of time (t^{exponent:.2})"),
             _ => format!("goes with t^{exponent:.2}"),
         }));
         parts.extend(self.distance_exponent.map(|exponent| match self.distance {
             Some(State::Present) => format!("takes the distance out (d^{exponent:.2})"),
             Some(State::Removed) => format!("has no distance term (d^{exponent:.2})"),
+            Some(State::Undetermined) => format!("has an uncertain exponent of distance (d^{exponent:.2})"),
             _ => format!("goes with d^{exponent:.2}"),
         }));
         parts.extend(self.corner_factor.map(|factor| match self.even {
-            true => "has no radial term".to_owned(),
-            false => format!("has a radial term, a factor of {factor:.2} at the corner (r = 1)"),
+            Some(true) => "has no radial term".to_owned(),
+            None => format!(
+                "may or may not have a radial term (a factor of {factor:.2} at the corner, uncertain)"
+            ),
+            Some(false) => format!("has a radial term, a factor of {factor:.2} at the corner (r = 1)"),
         }));
         let exact =
             if self.exact { " The relation is exact: one image was computed from the other." } else { "" };
         write!(f, "The vendor's scaling {}.{exact}", parts.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_interval_tells_no_radial_term_and_none_at_all() {
+        let even = |value, low_95, high_95| is_even(Estimate { value, low_95, high_95 });
+        assert_eq!(even(1.02, 0.97, 1.07), Some(true));
+        assert_eq!(even(1.3, 1.25, 1.35), Some(false));
+        assert_eq!(even(1.5, 0.9, 2.5), None);
+        assert_eq!(even(1.0, 0.5, 2.0), None);
     }
 }

@@ -82,7 +82,7 @@ impl Comparison {
             self.row(&format!("image {cv}"), "ratio", Lower, |e| {
                 e.image_cv.map(|cv| (cv.cv, cv.valid_fraction))
             }),
-            self.row("slope of ln A on ln d", "exponent", TowardsZero, |e| {
+            self.row(self.slope_name(), "exponent", TowardsZero, |e| {
                 e.distance_slope.map(|slope| (slope.slope, slope.valid_fraction))
             }),
             self.row("fixed-threshold IoU, minimum", "ratio", Higher, |e| {
@@ -106,6 +106,15 @@ impl Comparison {
             self.noise_amplification_row(),
         ]);
         rows
+    }
+
+    /// Says so where pixels of all materials enter: their slope is not only that of the distance.
+    fn slope_name(&self) -> &'static str {
+        let slopes = [self.before.distance_slope, self.after.distance_slope];
+        match slopes.iter().flatten().all(|slope| slope.labelled) {
+            true => "slope of ln A on ln d",
+            false => "slope of ln A on ln d, all pixels as one material",
+        }
     }
 
     fn row(

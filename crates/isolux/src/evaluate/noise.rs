@@ -3,14 +3,17 @@
 use serde::Serialize;
 
 use crate::plane::{Plane, Shape};
-use crate::statistics::{Moments, SIGMA_PER_MAD, median_absolute_deviation};
+use crate::noise::trimmed_deviation;
+use crate::statistics::{Moments, SIGMA_PER_MAD, median, median_absolute_deviation, quantile};
 
 use super::fraction;
 use super::input::{Times, same_time};
 use super::outcome::{Outcome, Unavailable};
 
 /// Differences that a frame must give for its noise to be estimated: fewer say nothing robust.
-const MINIMUM_DIFFERENCES: usize = 8;
+const MINIMUM_DIFFERENCES: usize = 16;
+/// Share of the differences on either side that the mean drift of a frame leaves out: edges that moved.
+const OUTER_SHARE: f64 = 0.05;
 /// Frame pairs from which a pixel's own noise is taken; its relative error is then 1/√(2·4) = 35 %, small
 /// against the factor 2 between strata.
 const MINIMUM_PAIRS: u32 = 4;
@@ -28,9 +31,11 @@ pub enum NoiseMethod {
 
 /// Relative noise of a typical pixel in a single frame.
 ///
-/// Temporal: 1.4826 · MAD over pixels of Δln A between consecutive frames of one run, over √2, averaged over
-/// frame pairs; a drift common to all pixels drops out. Spatial: the same of `ln A[c−1] − 2 ln A[c] + ln A[c+1]`
-/// over √6, averaged over frames.
+/// Temporal: standard deviation over pixels of Δln A between consecutive frames of one run, from the smaller 95 %
+/// of its deviations, over √2, averaged over frame pairs; a drift common to all pixels drops out. What moves in
+/// more than 5 % of the pixels counts as noise. Spatial: 1.4826 · MAD of `ln A[c−1] − 2 ln A[c] + ln A[c+1]`, whose
+/// outliers are the edges of the scene, over √6, averaged over frames; where more than half of these are equal
+/// (coarsely quantized images), the same standard deviation as over time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Noise {
     /// σ of A / A of one frame, dimensionless.
@@ -51,12 +56,13 @@ struct Estimate {
 }
 
 impl Estimate {
-    /// Takes in one frame's differences, which carry `gain` times the noise of one value. Overwrites them.
-    fn push(&mut self, differences: &mut [f64], gain: f64) {
+    /// Takes in one frame's differences, whose σ by `deviation` is `gain` times the noise of one value. Overwrites
+    /// them.
+    fn push(&mut self, differences: &mut [f64], gain: f64, deviation: fn(&mut [f64]) -> Option<f64>) {
         if differences.len() >= MINIMUM_DIFFERENCES
-            && let Some(deviation) = median_absolute_deviation(differences)
+            && let Some(sigma) = deviation(differences)
         {
-            self.sigma.push(SIGMA_PER_MAD * deviation / gain);
+            self.sigma.push(sigma / gain);
             self.differences += differences.len() as u64;
         }
     }
@@ -66,6 +72,35 @@ impl Estimate {
         let valid_fraction = fraction(self.differences, u64::from(frames) * pixels as u64);
         self.sigma.mean().map(|relative| Noise { relative, method, frames, valid_fraction })
     }
+}
+
+/// σ of differences in time. No median deviation: it is 0 where more than half of the pixels of a coarsely
+/// quantized image stay on their step.
+fn temporal_sigma(differences: &mut [f64]) -> Option<f64> {
+    centre(differences)?;
+    trimmed_deviation(differences)
+}
+
+/// σ of differences in space. Edges of the scene are far more than 5 % of these, so the median deviation is used
+/// wherever it is one. `differences` are overwritten with their absolute deviations, which serve the other too.
+fn spatial_sigma(differences: &mut [f64]) -> Option<f64> {
+    match median_absolute_deviation(differences)? {
+        0.0 => trimmed_deviation(differences),
+        deviation => Some(SIGMA_PER_MAD * deviation),
+    }
+}
+
+/// Subtracts the common drift: the mean without the outer differences. The median alone would be off by up to half
+/// a step of a quantized image; it comes first so that equal differences become exactly 0.
+fn centre(differences: &mut [f64]) -> Option<()> {
+    let middle = median(differences)?;
+    differences.iter_mut().for_each(|difference| *difference -= middle);
+    let (low, high) = (quantile(differences, OUTER_SHARE)?, quantile(differences, 1.0 - OUTER_SHARE)?);
+    let mut inner = Moments::default();
+    differences.iter().filter(|difference| (low..=high).contains(*difference)).for_each(|d| inner.push(*d));
+    let mean = inner.mean()?;
+    differences.iter_mut().for_each(|difference| *difference -= mean);
+    Some(())
 }
 
 /// Times of the previous frame, kept.
@@ -135,7 +170,7 @@ impl NoiseMeter {
             }
         }
         // The difference of two values has twice the variance of one.
-        self.temporal.push(&mut self.scratch, 2f64.sqrt());
+        self.temporal.push(&mut self.scratch, 2f64.sqrt(), temporal_sigma);
     }
 
     fn difference_pixels(&mut self, usable: &[f32], times: Times<'_>) {
@@ -154,7 +189,7 @@ impl NoiseMeter {
             }
         }
         // Weights 1, −2, 1: six times the variance of one value.
-        self.spatial.push(&mut self.scratch, 6f64.sqrt());
+        self.spatial.push(&mut self.scratch, 6f64.sqrt(), spatial_sigma);
     }
 
     pub(super) fn finish(&self) -> Outcome<Noise> {

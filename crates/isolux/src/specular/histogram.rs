@@ -1,4 +1,4 @@
-//! `histogram`: the cutoff is the highest intensity with at least `t_thresh` occurrences.
+//! `histogram`: the cutoff is the highest value with at least `t_thresh` occurrences.
 //!
 //! The paper leaves the bins and the threshold open. A float image with unit bins has no qualifying bin, so they
 //! are settled here: 256 bins on [0, min(max, 4·P99)], smoothed by a 3-bin box, and a threshold that grows with
@@ -18,7 +18,7 @@ const LOWEST_CUTOFF_QUANTILE: f64 = 0.98;
 /// Parameters of the histogram rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HistogramRule {
-    /// Occurrences that make an intensity trustworthy; `None`: max(2, 5·10⁻⁴ of the valid pixels).
+    /// Occurrences that make a value trustworthy; `None`: max(2, 5·10⁻⁴ of the valid pixels).
     pub occurrences: Option<u32>,
 }
 

@@ -16,7 +16,7 @@ use crate::quantile::PositiveQuantiles;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SpecularRule {
-    /// Highest intensity with enough occurrences (the paper's proposal).
+    /// Highest value with enough occurrences (the paper's proposal).
     Histogram(HistogramRule),
     /// Mean plus a multiple of the standard deviation.
     Sigma(SigmaRule),

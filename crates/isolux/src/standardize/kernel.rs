@@ -52,22 +52,16 @@ fn when(set: bool, flag: PixelFlags) -> PixelFlags {
     PixelFlags::from_bits_retain(u16::from(set) * flag.bits())
 }
 
-/// What [`tally`] counts: pixels whose flags, masked by the first, equal the second.
-pub(super) const TALLIES: [(PixelFlags, PixelFlags); 5] = [
-    (PixelFlags::INVALID, PixelFlags::INVALID),
-    (TIME_OR_INVALID, TIME_OR_INVALID),
-    (TIME_OR_INVALID, PixelFlags::TIME_OUT_OF_RANGE),
-    (PixelFlags::DISTANCE_OUT_OF_RANGE, PixelFlags::DISTANCE_OUT_OF_RANGE),
-    (PixelFlags::SPECULAR, PixelFlags::SPECULAR),
-];
-const TIME_OR_INVALID: PixelFlags = PixelFlags::TIME_OUT_OF_RANGE.union(PixelFlags::INVALID);
+/// What [`tally`] counts: pixels with each of these flags.
+pub(super) const TALLIES: [PixelFlags; 3] =
+    [PixelFlags::INVALID, PixelFlags::DISTANCE_OUT_OF_RANGE, PixelFlags::SPECULAR];
 
 /// Adds the counts of one block. They are kept in u16, the width of the flags, so that the loop vectorizes.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
 pub(super) fn tally(block: &[PixelFlags], totals: &mut [usize; TALLIES.len()]) {
     debug_assert!(block.len() <= usize::from(u16::MAX));
-    for ((mask, wanted), total) in TALLIES.iter().zip(totals) {
-        let matches = block.iter().map(|flags| u16::from(flags.bits() & mask.bits() == wanted.bits()));
+    for (wanted, total) in TALLIES.iter().zip(totals) {
+        let matches = block.iter().map(|flags| u16::from(flags.contains(*wanted)));
         *total += usize::from(matches.fold(0u16, u16::wrapping_add));
     }
 }

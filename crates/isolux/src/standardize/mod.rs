@@ -43,9 +43,9 @@ pub struct FrameSummary {
     pub valid: usize,
     /// All pixels.
     pub pixels: usize,
-    /// Pixels whose integration time is above the table's range, or unknown: refused.
+    /// Measured pixels whose integration time is above the table's range, or unknown: refused.
     pub time_refused: usize,
-    /// Pixels whose integration time is below the table: continued as 1/t and flagged.
+    /// Measured pixels whose integration time is below the table: continued as 1/t and flagged.
     pub time_extrapolated: usize,
     /// Pixels whose distance is outside the fitted range: continued as d² and flagged.
     pub distance_extrapolated: usize,
@@ -136,15 +136,19 @@ impl Standardizer {
         frame.check_shapes()?;
         out.reshape(frame.shape());
         out.flags.values_mut().copy_from_slice(frame.flags.values());
-        let time_gain =
-            time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
-        self.scale(frame, time_gain, out)?;
+        let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
+        self.scale(frame, time.gain, out)?;
         let specular_cutoff =
             self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.quantiles));
         if let Some(cutoff) = specular_cutoff {
             specular::limit(&mut out.amplitude, &mut out.flags, cutoff);
         }
-        Ok(FrameSummary { specular_cutoff, ..count(out) })
+        Ok(FrameSummary {
+            specular_cutoff,
+            time_refused: time.refused,
+            time_extrapolated: time.extrapolated,
+            ..count(out)
+        })
     }
 
     /// Runs the point-wise loop block by block. A step that is left out reads a block of ones from the cache.
@@ -183,14 +187,12 @@ fn count(out: &Standardized) -> FrameSummary {
     let flags = out.flags.values();
     let mut tally = [0; kernel::TALLIES.len()];
     flags.chunks(BLOCK).for_each(|block| kernel::tally(block, &mut tally));
-    let [invalid, time_refused, time_extrapolated, distance_extrapolated, specular] = tally;
+    let [invalid, distance_extrapolated, specular] = tally;
     FrameSummary {
         valid: flags.len() - invalid,
         pixels: flags.len(),
-        time_refused,
-        time_extrapolated,
         distance_extrapolated,
         specular,
-        specular_cutoff: None,
+        ..FrameSummary::default()
     }
 }

@@ -41,14 +41,12 @@ impl Plan {
             calibration.check()?;
         }
         let mut planner = Planner { choice, calibration, available, steps: Vec::new(), notes: Vec::new() };
-        if calibration.is_none() && choice.method == Method::Best {
-            let textbook = |named: bool| !named;
-            if textbook(choice.time.is_some()) || textbook(choice.distance.is_some()) {
-                planner.notes.push(Note::Textbook);
-            }
-        }
         let time = planner.time()?;
         let distance = planner.distance()?;
+        let textbook: Vec<&str> = planner.steps.iter().map(|step| step.term).collect();
+        if calibration.is_none() && !textbook.is_empty() {
+            planner.notes.insert(0, Note::Textbook { terms: textbook.join(", ") });
+        }
         let specular = planner.specular();
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
         Ok(Self {
@@ -224,14 +222,14 @@ mod tests {
     fn without_a_calibration_the_steps_are_textbook_and_say_so() {
         let plan = Plan::new(&Choice::default(), None, BOTH).unwrap();
         assert_eq!(terms(&plan), ["linear", "square", "histogram"]);
-        assert_eq!(plan.notes, [Note::Textbook]);
+        assert_eq!(plan.notes, [Note::Textbook { terms: "linear, square".to_owned() }]);
     }
 
     #[test]
     fn channels_that_are_not_there_are_skipped_with_a_note_or_refused_by_name() {
         let plan = Plan::new(&Choice::default(), None, Channels::AMPLITUDE).unwrap();
         assert_eq!(terms(&plan), ["histogram"]);
-        assert_eq!(plan.notes.len(), 3);
+        assert_eq!(plan.notes.len(), 2);
         let named = Choice { distance: Some(DistanceStep::Eq5), ..Choice::default() };
         let error = Plan::new(&named, None, Channels::AMPLITUDE).unwrap_err();
         assert_eq!(error, PlanError::ChannelMissing { term: "eq5", channel: "distance" });

@@ -18,7 +18,10 @@ pub struct AppliedStep {
 #[non_exhaustive]
 pub enum Note {
     /// No calibration: textbook physics, not this camera.
-    Textbook,
+    Textbook {
+        /// The terms that are used.
+        terms: String,
+    },
     /// `best` goes without a term that the calibration lacks.
     TermMissing {
         /// The term.
@@ -38,9 +41,10 @@ pub enum Note {
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Textbook => f.write_str(
-                "no calibration given: the steps are textbook physics (t_ref/t, d²), not this camera. `isolux \
-                 calibrate` measures its saturation and its own distance law",
+            Self::Textbook { terms } => write!(
+                f,
+                "no calibration given: {terms} is textbook physics, not this camera. `isolux calibrate` measures its \
+                 saturation and its own distance law"
             ),
             Self::TermMissing { term, instead } => {
                 write!(f, "the calibration has no `{term}`: this step is left out. {instead}")

@@ -16,6 +16,16 @@ pub(super) enum TimeGain {
     PerPixel,
 }
 
+/// The multipliers of a frame, and how many of its measured pixels the table does not cover.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TimeOutcome {
+    pub(super) gain: TimeGain,
+    /// Above the range, or unknown.
+    pub(super) refused: usize,
+    /// Below the range.
+    pub(super) extrapolated: usize,
+}
+
 /// A multiplier, and the flags of the pixels that get it. NaN where there is none.
 type Answer = (f32, PixelFlags);
 
@@ -28,26 +38,41 @@ pub(super) fn gains(
     frame: &Frame,
     gains: &mut [f32],
     flags: &mut [PixelFlags],
-) -> Result<TimeGain, StandardizeError> {
+) -> Result<TimeOutcome, StandardizeError> {
+    let mut outcome = TimeOutcome { gain: TimeGain::Uniform(1.0), refused: 0, extrapolated: 0 };
     match (plan, &frame.integration_time_us) {
-        (TimePlan::None, _) => Ok(TimeGain::Uniform(1.0)),
-        (_, IntegrationTime::Unknown) => Err(StandardizeError::TimeUnknown),
+        (TimePlan::None, _) => {}
+        (_, IntegrationTime::Unknown) => return Err(StandardizeError::TimeUnknown),
         (_, IntegrationTime::PerFrame(time_us)) => {
             let (gain, flag) = answer(plan, *time_us);
             if !flag.is_empty() {
-                flags.iter_mut().for_each(|flags| *flags |= flag);
+                flags.iter_mut().for_each(|flags| outcome.flag(flags, flag));
             }
-            Ok(TimeGain::Uniform(gain))
+            outcome.gain = TimeGain::Uniform(gain);
         }
         (_, IntegrationTime::PerPixel(map)) => {
             let mut known = Memo::default();
             for ((&time_us, gain), flags) in map.values().iter().zip(gains).zip(flags) {
                 let (value, flag) = known.get(time_us, |time_us| answer(plan, time_us));
                 *gain = value;
-                *flags |= flag;
+                if !flag.is_empty() {
+                    outcome.flag(flags, flag);
+                }
             }
-            Ok(TimeGain::PerPixel)
+            outcome.gain = TimeGain::PerPixel;
         }
+    }
+    Ok(outcome)
+}
+
+impl TimeOutcome {
+    /// Flags one pixel; counts it where it was a measurement so far.
+    fn flag(&mut self, flags: &mut PixelFlags, flag: PixelFlags) {
+        let measured = !flags.contains(PixelFlags::INVALID);
+        let refused = flag.contains(PixelFlags::INVALID);
+        self.refused += usize::from(measured && refused);
+        self.extrapolated += usize::from(measured && !refused);
+        *flags |= flag;
     }
 }
 
@@ -101,7 +126,9 @@ mod tests {
             IntegrationTime::PerPixel(Plane::from_vec(Shape::new(3, 3), times.to_vec()).unwrap());
         let (mut values, mut flags) = ([0.0; 9], [PixelFlags::empty(); 9]);
         let plan = TimePlan::Linear { reference_us: 1000.0 };
-        assert_eq!(gains(&plan, &frame, &mut values, &mut flags), Ok(TimeGain::PerPixel));
+        flags[4] = PixelFlags::INVALID;
+        let expected = TimeOutcome { gain: TimeGain::PerPixel, refused: 1, extrapolated: 0 };
+        assert_eq!(gains(&plan, &frame, &mut values, &mut flags), Ok(expected));
         for (i, time) in times.into_iter().enumerate() {
             if time > 0.0 {
                 assert_eq!((values[i], flags[i]), (1000.0 / time, PixelFlags::empty()));

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::polynomial::{evaluate, fit_relative};
+use super::polynomial::{distinct, evaluate, fit_relative};
 use super::{DistanceGain, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require, root_mean_square};
 
 /// Amplitude and distance of the flat target at one position.
@@ -249,7 +249,7 @@ fn pooled(inverses: &[Inverse]) -> Vec<(f64, f64)> {
 }
 
 fn fit_pool(pool: &[(f64, f64)]) -> Result<[f64; 4], CubicError> {
-    fit_relative(pool).ok_or(CubicError::TooFewDistances { found: pool.len() })
+    fit_relative(pool).ok_or_else(|| CubicError::TooFewDistances { found: distinct(pool) })
 }
 
 fn range_of(points: &[(f64, f64)]) -> [f64; 2] {

@@ -73,7 +73,7 @@ pub(crate) fn fit_relative(points: &[(f64, f64)]) -> Option<[f64; 4]> {
 }
 
 /// Number of different x among `points`.
-fn distinct(points: &[(f64, f64)]) -> usize {
+pub(crate) fn distinct(points: &[(f64, f64)]) -> usize {
     let mut xs: Vec<f64> = points.iter().map(|&(x, _)| x).collect();
     xs.sort_by(f64::total_cmp);
     xs.dedup();

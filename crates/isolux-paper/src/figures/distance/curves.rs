@@ -90,7 +90,8 @@ fn curve(lab: &Lab, integration_time_us: f64) -> Result<Curve, PaperError> {
     let reaches_reference = points.first().is_some_and(|nearest| nearest.distance_m <= reference_m);
     let middle_m = points.get(points.len() / 2).map_or(f64::NAN, |point| point.distance_m);
     let anchor_m = if reaches_reference { reference_m } else { middle_m };
-    let (own, _) = Cubic::fit(std::slice::from_ref(&decay), anchor_m).map_err(CalibrateError::from)?;
+    let (own, _) = Cubic::fit(std::slice::from_ref(&decay), anchor_m)
+        .map_err(|source| CalibrateError::Cubic { source, warnings: Vec::new() })?;
     let anchor_dn = anchor_amplitude_dn(&points, &own);
     let reference_dn = if reaches_reference { anchor_dn } else { onto(&points, pooled) };
     let is_fitted =

@@ -22,15 +22,60 @@ fn sweep(times_us: &[f64], repeats: usize, sigma: f64) -> Vec<Frame> {
 fn temporal_noise_is_recovered_and_the_ramp_between_times_is_not_noise() {
     let noise = evaluate(&sweep(&[1000.0, 3000.0], 5, 0.02), None).noise.unwrap();
     assert_eq!((noise.method, noise.frames), (NoiseMethod::Temporal, 8));
-    // σ of a MAD estimate is 1.17 σ/√n (efficiency 37 %): n = 2000, eight dependent pairs; five of those.
-    assert_near(noise.relative, 0.02, 0.02 * 5.0 * 1.17 / 2000f64.sqrt());
+    // The error of a deviation from the inner 95 % of normal values is 0.76 σ/√n (efficiency 87 %): n = 2000, eight
+    // dependent pairs; five of those.
+    assert_near(noise.relative, 0.02, 0.02 * 5.0 * 0.76 / 2000f64.sqrt());
+}
+
+/// A flat image near 20 DN in steps of 1 DN, with noise of 0.35 DN and a drift of `drift_dn` a frame.
+fn quantized(frames: usize, drift_dn: f64) -> Vec<Frame> {
+    let mut normal = Normal(7);
+    let at = |number| {
+        let level_dn = 20.0 + drift_dn * f64::from(number);
+        frame(SHAPE, 1000.0, |_, _| (level_dn + 0.35 * normal.next()).round() as f32)
+    };
+    (0..u32::try_from(frames).unwrap()).map(at).collect()
+}
+
+/// Standard deviation over mean of all values of a frame.
+fn relative_deviation(frame: &Frame) -> f64 {
+    let mut moments = crate::statistics::Moments::default();
+    frame.amplitude.values().iter().for_each(|value| moments.push(f64::from(*value)));
+    moments.coefficient_of_variation().unwrap()
+}
+
+#[test]
+fn noise_below_a_step_of_the_image_is_not_zero() {
+    // At 20 DN, 15 % of the values are a step off: the median of their differences' deviations is 0. The number of
+    // differences that are not has an error of √(0.27 · 0.73/2000)/0.27 = 3.7 % a pair, half of that in σ; five
+    // of those. What the inner 95 % of steps instead of normal values are off by is 0.2 %.
+    let frames = quantized(5, 0.0);
+    let truth = relative_deviation(&frames[0]);
+    assert_near(truth, 0.0196, 0.001);
+    let noise = evaluate(&frames, None).noise.unwrap();
+    assert_eq!((noise.method, noise.frames), (NoiseMethod::Temporal, 4));
+    assert_near(noise.relative, truth, 0.1 * truth);
+
+    // Half way between steps, where the median is a step or none, a drift of a fifth of a step: variance of the
+    // rounded values at most 0.25 + the share of outer steps, σ 0.39 to 0.51 DN; no half step of drift added.
+    let frames = quantized(3, 0.2);
+    let truth = frames.iter().map(relative_deviation).sum::<f64>() / 3.0;
+    assert_near(evaluate(&frames, None).noise.unwrap().relative, truth, 0.15 * truth);
+
+    // A single frame: second differences; most of an even finer noise's are 0.
+    let mut normal = Normal(9);
+    let fine = frame(SHAPE, 1000.0, |_, _| (20.0 + 0.25 * normal.next()).round() as f32);
+    let noise = evaluate(std::slice::from_ref(&fine), None).noise.unwrap();
+    assert_eq!(noise.method, NoiseMethod::Spatial);
+    assert!(noise.relative > 0.3 * relative_deviation(&fine), "{noise:?}");
 }
 
 #[test]
 fn spatial_noise_serves_where_no_time_is_repeated() {
     let noise = evaluate(&sweep(&[1000.0, 3000.0], 1, 0.02), None).noise.unwrap();
     assert_eq!((noise.method, noise.frames), (NoiseMethod::Spatial, 2));
-    // As above; the eight columns beside texture edges (16 %) are outliers that raise a MAD by about 1.25 · 16 %.
+    // σ of a MAD estimate is 1.17 σ/√n (efficiency 37 %), five of those; the eight columns beside texture edges
+    // (16 %) are outliers that raise a MAD by about 1.25 · 16 %.
     assert_near(noise.relative, 0.02, 0.02 * (0.25 + 0.13));
     assert!(noise.relative > 0.02);
 }
