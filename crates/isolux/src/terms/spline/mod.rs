@@ -159,7 +159,7 @@ impl Spline {
             require(fine, "spline.harmonic", largest, "coefficients from -0.5 to 0.5")?;
         }
         let impossible = self.impossible().map_or_else(String::new, |(d, h)| format!("{h:.3e} at {d:.3} m"));
-        let expected = "a multiplier from 1e-9 to 1e9 over its range";
+        let expected = "a multiplier from 1e-12 to 1e12 over its range";
         require(impossible.is_empty(), "spline.coefficients", impossible, expected)?;
         let weight = self.curvature_weight;
         require(weight >= 0.0 && weight.is_finite(), "spline.curvature_weight", weight, "0 or more")
