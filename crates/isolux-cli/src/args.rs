@@ -63,7 +63,8 @@ pub(crate) struct InfoArgs {
 /// Fit a camera's calibration from sweeps
 ///
 /// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), a
-/// distance sweep the polynomial over distance (`cubic`). What no recording determines is left out.
+/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines
+/// is left out.
 ///
 /// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
 /// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
@@ -315,6 +316,8 @@ pub(crate) enum TimeArg {
 pub(crate) enum DistanceArg {
     /// The calibration's polynomial
     Cubic,
+    /// The calibration's smooth law
+    Spline,
     /// (d / d_ref)²
     Square,
     /// Eq. 5 of the paper: ((2d)² + 1) / ((2 d_ref)² + 1)
@@ -349,6 +352,7 @@ impl StepArgs {
         });
         let distance = self.distance.map(|distance| match distance {
             DistanceArg::Cubic => DistanceStep::Cubic,
+            DistanceArg::Spline => DistanceStep::Spline,
             DistanceArg::Square => DistanceStep::Square,
             DistanceArg::Eq5 => DistanceStep::Eq5,
             DistanceArg::None => DistanceStep::None,

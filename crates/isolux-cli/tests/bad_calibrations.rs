@@ -46,7 +46,7 @@ fn fields_that_are_unknown_newer_or_impossible() {
     let cases: [Spoilt; 24] = [
         ("/version", json!(2), &["format version 2, expected at most 1", "update isolux"]),
         ("/gamma", json!(2.2), &["unknown field `gamma`"]),
-        ("/terms/spline", json!({}), &["unknown field `spline`"]),
+        ("/terms/wavelet", json!({}), &["unknown field `wavelet`"]),
         ("/terms/lut/gamma", json!(1), &["unknown field `gamma`"]),
         ("/terms/lut/fit/gamma", json!(1), &["unknown field `gamma`"]),
         ("/reference/distance_mm", json!(750), &["unknown field `distance_mm`"]),

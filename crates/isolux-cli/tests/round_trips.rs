@@ -10,7 +10,9 @@ use isolux::{Calibration, Frame, IntegrationTime, Reference};
 use isolux_io::{ChannelSpec, ElementType, RecordingInfo, RecordingWriter};
 use proptest::prelude::*;
 use support::run;
-use support::strategies::{CHANNELS, PIXELS, SHAPE, bits, calibration, cases, cubics, frames, luts, words};
+use support::strategies::{
+    CHANNELS, PIXELS, SHAPE, bits, calibration, cases, cubics, frames, luts, splines, words,
+};
 
 proptest! {
     #![proptest_config(cases(64))]
@@ -19,12 +21,16 @@ proptest! {
     #[test]
     fn a_calibration_file_reads_back(
         camera in prop::option::of(".{0,20}"), lut in prop::option::of(luts()), cubic in prop::option::of(cubics()),
+        spline in prop::option::of(splines()),
         time in 1.0..1e5f64, distance_m in 0.01..100.0f64, floor in prop::option::of((0.01..99.0f64, 1.0..1e4f64)),
         warnings in words(),
     ) {
         let reference = Reference { integration_time_us: Some(time), distance_m };
         let mut written = Calibration::new(camera, reference);
-        written.terms = Terms { lut, cubic };
+        written.terms = Terms { lut, cubic, spline };
+        if let Some(spline) = & written.terms.spline {
+            written.reference.distance_m = spline.reference_distance_m;
+        }
         written.noise_floor = floor.map(|(sd, time)| NoiseFloor::new(sd, time));
         written.warnings = warnings;
         let folder = tempfile::tempdir().unwrap();

@@ -6,7 +6,12 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
-use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer};
+use isolux::terms::Spline;
+use isolux::terms::cubic::{Decay, DecayPoint};
+use isolux::{
+    Calibration, Channels, Choice, Frame, IntegrationTime, Plane, Reference, Shape, Standardized,
+    Standardizer,
+};
 
 const SHAPES: [Shape; 2] = [Shape::new(144, 176), Shape::new(1000, 1000)];
 
@@ -31,19 +36,39 @@ fn frame(shape: Shape, per_pixel: bool) -> Frame {
 }
 
 fn standardize(bencher: Bencher, shape: Shape, per_pixel: bool, specular: Option<SpecularStep>) {
-    let choice = Choice {
-        time: Some(TimeStep::Linear),
-        distance: Some(DistanceStep::Eq5),
-        specular,
-        ..Choice::default()
-    };
+    standardize_with(bencher, shape, per_pixel, specular, DistanceStep::Eq5);
+}
+
+fn standardize_with(
+    bencher: Bencher,
+    shape: Shape,
+    per_pixel: bool,
+    specular: Option<SpecularStep>,
+    distance: DistanceStep,
+) {
+    let choice =
+        Choice { time: Some(TimeStep::Linear), distance: Some(distance), specular, ..Choice::default() };
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
     let standardizer =
-        Standardizer::plan(&choice, None, channels).expect("textbook steps need no calibration");
+        Standardizer::plan(&choice, Some(&calibration()), channels).expect("the calibration holds the terms");
     let (frame, mut out) = (frame(shape, per_pixel), Standardized::new(shape));
     bencher
         .counter(ItemsCount::new(shape.pixels()))
         .bench_local(|| standardizer.apply(black_box(&frame), black_box(&mut out)).expect("frame fits"));
+}
+
+/// The spline of a camera with an aliased harmonic at 20 MHz, fitted on positions from 0.3 to 4 m.
+fn calibration() -> Calibration {
+    let point = |i: u32| {
+        let distance_m = 0.3 * (4.0f64 / 0.3).powf(f64::from(i) / 39.0);
+        let harmonic = 1.0 + 0.02 * (3.353 * distance_m).cos();
+        DecayPoint { distance_m, amplitude_dn: 1e3 * harmonic / (distance_m * distance_m) }
+    };
+    let decay = Decay { integration_time_us: None, points: (0..40).map(point).collect() };
+    let mut calibration = Calibration::new(None, Reference::default());
+    let (spline, _) = Spline::fit(&[decay], 0.75, Some(20e6)).expect("positions make a spline");
+    calibration.terms.spline = Some(spline);
+    calibration
 }
 
 /// Reads amplitude, distance and flags, writes amplitude and flags, as the chain must.
@@ -61,6 +86,11 @@ fn memcpy(bencher: Bencher, shape: Shape) {
 #[divan::bench(args = SHAPES)]
 fn pointwise(bencher: Bencher, shape: Shape) {
     standardize(bencher, shape, false, Some(SpecularStep::None));
+}
+
+#[divan::bench(args = SHAPES)]
+fn pointwise_spline(bencher: Bencher, shape: Shape) {
+    standardize_with(bencher, shape, false, Some(SpecularStep::None), DistanceStep::Spline);
 }
 
 #[divan::bench(args = SHAPES)]

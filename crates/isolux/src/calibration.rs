@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Cubic, Lut, ParameterError, require};
+use crate::terms::{Cubic, Lut, ParameterError, Spline, require};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -64,6 +64,9 @@ pub struct Terms {
     /// Distance, the paper's cubic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cubic: Option<Cubic>,
+    /// Distance, a smooth law around the inverse square.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spline: Option<Spline>,
 }
 
 /// A camera's calibration, as its file holds it.
@@ -142,7 +145,11 @@ impl Calibration {
         let needs_time = self.terms.lut.is_some() && integration_time_us.is_none();
         require(!needs_time, "reference.integration_time_us", "nothing", "the time at which the lut is 1")?;
         self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
-        self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)
+        self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
+        let Some(spline) = &self.terms.spline else { return Ok(()) };
+        let gauge_m = spline.reference_distance_m;
+        require(gauge_m == distance_m, "spline.reference_distance_m", gauge_m, "reference.distance_m")?;
+        spline.check()
     }
 }
 

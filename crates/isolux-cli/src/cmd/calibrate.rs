@@ -6,7 +6,8 @@ use isolux::calibrate::{
     self, CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureSweep, FitReport,
     ReferenceDecays,
 };
-use isolux::terms::{FitQuality, Lut};
+use isolux::terms::cubic::Scaling;
+use isolux::terms::{FitQuality, Lut, Spline};
 use isolux::{Calibration, Channels, Frame, Reference};
 
 use crate::args::CalibrateArgs;
@@ -31,6 +32,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         window_px: usize::from(args.window),
         skip_frames: args.skip_frames,
         exclude_time_us: args.exclude_time_us.clone(),
+        modulation_frequency_hz: None,
     };
     let (calibration, report) =
         fit(&settings, args.camera.clone(), &args.exposure_sweep, &args.distance_sweep)?;
@@ -43,7 +45,8 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     console::print(format!("written: {}", args.output.display()))
 }
 
-/// Measures the sweeps and fits what they determine.
+/// Measures the sweeps and fits what they determine. Distance sweeps tell the modulation frequency, unless the
+/// settings do.
 pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
@@ -63,7 +66,11 @@ pub(crate) fn fit(
         ));
     }
     let camera = camera.or_else(|| cameras.into_iter().next());
-    calibrate::fit(settings, camera, curves, decays).map_err(|error| {
+    let mut settings = settings.clone();
+    if settings.modulation_frequency_hz.is_none() {
+        settings.modulation_frequency_hz = modulation_frequency_hz(distance_sweeps)?;
+    }
+    calibrate::fit(&settings, camera, curves, decays).map_err(|error| {
         error.warnings().iter().for_each(console::warn);
         match error {
             // Pooled from all distance sweeps, so the error knows none of them.
@@ -74,6 +81,23 @@ pub(crate) fn fit(
             other => Failure::data(other),
         }
     })
+}
+
+/// The frequency that all distance sweeps name; one that does not leaves it open.
+fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
+    let mut frequencies = Vec::new();
+    for path in paths {
+        frequencies.push(isolux_io::open(path)?.metadata().info.modulation_frequency_hz);
+    }
+    frequencies.dedup();
+    if frequencies.len() > 1 {
+        console::warn(
+            "the distance sweeps name different modulation frequencies, or some of them none: the spline goes \
+             without the harmonic",
+        );
+        return Ok(None);
+    }
+    Ok(frequencies.first().copied().flatten())
 }
 
 fn exposure_curve(
@@ -127,6 +151,13 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         let [min, max] = cubic.valid_distance_m;
         text.push(format!("valid from {min:.3} to {max:.3} m"));
     }
+    if let Some(spline) = &calibration.terms.spline {
+        text.push(format!("\nspline, law over distance: {}", quality(&spline.fit, "positions")));
+        text.push(spline_table(spline));
+        text.push(spline_use_table(report));
+        let [min, max] = spline.valid_distance_m;
+        text.push(format!("valid from {min:.3} to {max:.3} m; {}", harmonic(spline)));
+    }
     if let Some(floor) = calibration.noise_floor {
         text.push(format!(
             "\nnoise floor: {:.2} DN at {} µs; amplitudes below {:.1} DN are flagged LOW_SIGNAL",
@@ -163,4 +194,43 @@ fn decay_table(report: &FitReport) -> String {
         vec![format!("  {time}"), decay.points.len().to_string(), residual, scaling]
     }));
     table(&rows)
+}
+
+/// The multiplier, and what it is beside the inverse square, at nine distances.
+fn spline_table(spline: &Spline) -> String {
+    const STEPS: u32 = 8;
+    let [min_m, max_m] = spline.valid_distance_m;
+    let mut rows = vec![["  d in m", "1/h(d)", "beside (d/d_ref)²"].map(str::to_owned).to_vec()];
+    rows.extend((0..=STEPS).map(|step| {
+        let distance_m = min_m * (max_m / min_m).powf(f64::from(step) / f64::from(STEPS));
+        let multiplier = spline.multiplier(distance_m);
+        let beside = multiplier / (distance_m / spline.reference_distance_m).powi(2) - 1.0;
+        vec![format!("  {distance_m:.3}"), format!("{multiplier:.4}"), format!("{:+.2} %", 100.0 * beside)]
+    }));
+    table(&rows)
+}
+
+fn spline_use_table(report: &FitReport) -> String {
+    let mut rows = vec![["  t in µs", "outliers", "residual", "use"].map(str::to_owned).to_vec()];
+    rows.extend(report.spline_uses.iter().map(|used| {
+        let time = used.integration_time_us.map_or_else(|| "unknown".to_owned(), |time| time.to_string());
+        let residual = used.residual.map_or_else(|| "-".to_owned(), |r| format!("{:.2} %", 100.0 * r));
+        let scaling = match used.scaling {
+            Scaling::AtReference => "covers the reference distance",
+            Scaling::OntoOthers | Scaling::LeftOut => used.scaling.describe(),
+        };
+        vec![format!("  {time}"), used.outliers.to_string(), residual, scaling.to_owned()]
+    }));
+    table(&rows)
+}
+
+fn harmonic(spline: &Spline) -> String {
+    spline.harmonic.map_or_else(
+        || "no harmonic".to_owned(),
+        |harmonic| {
+            let (percent, mhz) =
+                (100.0 * harmonic.cosine.hypot(harmonic.sine), harmonic.modulation_frequency_hz / 1e6);
+            format!("harmonic at {mhz:.4} MHz: {percent:.2} %")
+        },
+    )
 }

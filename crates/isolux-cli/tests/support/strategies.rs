@@ -4,7 +4,8 @@ use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::ExposureSample;
-use isolux::terms::{Cubic, FitQuality, Lut, Source};
+use isolux::terms::spline::Harmonic;
+use isolux::terms::{Cubic, FitQuality, Lut, Source, Spline};
 use isolux::{
     Calibration, Channels, Choice, Frame, IntegrationTime, PixelFlags, Plane, Reference, Shape, SpecularRule,
     Standardizer,
@@ -21,7 +22,7 @@ pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
 
-/// A table for 200 to 20000 µs and a cubic for 0.3 to 3 m.
+/// A table for 200 to 20000 µs, a cubic and a spline for 0.3 to 3 m.
 pub fn calibration() -> Calibration {
     let sample = |&t: &f64| ExposureSample {
         integration_time_us: t,
@@ -35,6 +36,7 @@ pub fn calibration() -> Calibration {
     let decay = Decay { integration_time_us: None, points: points.collect() };
     let mut calibration = Calibration::new(None, Reference::default());
     calibration.terms.lut = Some(Lut::fit(&times.iter().map(sample).collect::<Vec<_>>(), 8200.0).unwrap());
+    calibration.terms.spline = Some(Spline::fit(std::slice::from_ref(&decay), 0.75, Some(20e6)).unwrap().0);
     calibration.terms.cubic = Some(Cubic::fit(&[decay], 0.75).unwrap().0);
     calibration
 }
@@ -50,8 +52,13 @@ pub fn time_steps() -> impl Strategy<Value = TimeStep> {
 }
 
 pub fn distance_steps() -> impl Strategy<Value = DistanceStep> {
-    let steps = [DistanceStep::Cubic, DistanceStep::Square, DistanceStep::Eq5, DistanceStep::None];
-    prop::sample::select(steps.to_vec())
+    prop::sample::select(vec![
+        DistanceStep::Cubic,
+        DistanceStep::Spline,
+        DistanceStep::Square,
+        DistanceStep::Eq5,
+        DistanceStep::None,
+    ])
 }
 
 pub fn specular_steps() -> impl Strategy<Value = SpecularStep> {
@@ -137,6 +144,28 @@ pub fn cubics() -> impl Strategy<Value = Cubic> {
         |((coefficients, min, span), fitted_on, fit, warnings)| {
             let valid_distance_m = [min, min + span];
             Cubic { version: Cubic::VERSION, coefficients, valid_distance_m, fitted_on, fit, warnings }
+        },
+    )
+}
+
+pub fn splines() -> impl Strategy<Value = Spline> {
+    let harmonic =
+        (1e6..1e8f64, -0.4..0.4f64, -0.4..0.4f64).prop_map(|(modulation_frequency_hz, cosine, sine)| {
+            Harmonic { modulation_frequency_hz, cosine, sine }
+        });
+    let numbers = (prop::collection::vec(-2.0..2.0f64, 4..40), prop::option::of(harmonic));
+    let range = (1e-2..1.0f64, 0.0..1.0f64, 0.1..10.0f64);
+    (numbers, range, 0.0..1.0f64, sources(), quality(), words()).prop_map(
+        |((coefficients, harmonic), (min, at, span), curvature_weight, fitted_on, fit, warnings)| Spline {
+            version: Spline::VERSION,
+            reference_distance_m: min + at * span,
+            valid_distance_m: [min, min + span],
+            coefficients,
+            harmonic,
+            curvature_weight,
+            fitted_on,
+            fit,
+            warnings,
         },
     )
 }

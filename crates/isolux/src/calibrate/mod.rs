@@ -15,7 +15,8 @@ use crate::frame::IntegrationTime;
 use crate::plane::ShapeError;
 use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
 use crate::terms::lut::{ExposureSample, LutAnswer, LutError};
-use crate::terms::{Cubic, Lut};
+use crate::terms::spline::SplineUse;
+use crate::terms::{Cubic, Lut, Spline};
 
 /// What the user decides about a calibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,11 +29,20 @@ pub struct CalibrateSettings {
     pub skip_frames: usize,
     /// Integration times to leave out, µs.
     pub exclude_time_us: Vec<f64>,
+    /// Modulation frequency of the distance sweeps, Hz, where it is known: the spline then allows for the aliased
+    /// harmonic.
+    pub modulation_frequency_hz: Option<f64>,
 }
 
 impl Default for CalibrateSettings {
     fn default() -> Self {
-        Self { reference: Reference::default(), window_px: 20, skip_frames: 0, exclude_time_us: Vec::new() }
+        Self {
+            reference: Reference::default(),
+            window_px: 20,
+            skip_frames: 0,
+            exclude_time_us: Vec::new(),
+            modulation_frequency_hz: None,
+        }
     }
 }
 
@@ -117,6 +127,8 @@ pub struct FitReport {
     pub exposure_curves: Vec<ExposureCurve>,
     /// Reference decays as they entered the cubic, with what became of them.
     pub decays: Vec<(Decay, DecayUse)>,
+    /// What became of the same decays in the spline; empty where there is none.
+    pub spline_uses: Vec<SplineUse>,
     /// Everything that the user should know or record better, also in the calibration's terms.
     pub warnings: Vec<FitWarning>,
 }
@@ -147,13 +159,11 @@ pub fn fit(
         // Nothing says what the amplitudes of another time would be.
         calibration.reference.integration_time_us = None;
     }
-    let mut decays = Vec::new();
+    let mut report = FitReport { exposure_curves, decays: Vec::new(), spline_uses: Vec::new(), warnings };
     if !distance_sweeps.is_empty() {
-        let (cubic, uses) = fit_cubic(settings, distance_sweeps, &mut warnings)?;
-        decays = uses;
-        calibration.terms.cubic = Some(cubic);
+        fit_distance(settings, distance_sweeps, &mut calibration, &mut report)?;
     }
-    Ok((calibration, FitReport { exposure_curves, decays, warnings }))
+    Ok((calibration, report))
 }
 
 /// One table per sweep, then their geometric mean. Sweeps at unlike walls differ by a factor, which the normalization
@@ -211,11 +221,13 @@ fn merge_samples(tables: &[Lut]) -> Vec<ExposureSample> {
     times.into_iter().filter_map(sample).collect()
 }
 
-fn fit_cubic(
+/// Cubic and spline of the same decays. A spline that cannot be fitted is a warning: the cubic is there.
+fn fit_distance(
     settings: &CalibrateSettings,
     sweeps: Vec<ReferenceDecays>,
-    warnings: &mut Vec<FitWarning>,
-) -> Result<(Cubic, Vec<(Decay, DecayUse)>), CalibrateError> {
+    calibration: &mut Calibration,
+    report: &mut FitReport,
+) -> Result<(), CalibrateError> {
     let mut found = Vec::new();
     let (mut sources, mut decays) = (Vec::new(), Vec::new());
     for sweep in sweeps {
@@ -223,13 +235,29 @@ fn fit_cubic(
         sources.push(sweep.source);
         decays.extend(sweep.decays);
     }
-    let (mut cubic, uses) = Cubic::fit(&decays, settings.reference.distance_m)
+    let reference_m = settings.reference.distance_m;
+    let (mut cubic, uses) = Cubic::fit(&decays, reference_m)
         .map_err(|source| CalibrateError::Cubic { source, warnings: found.clone() })?;
+    let words = |warnings: &[FitWarning]| warnings.iter().map(ToString::to_string).collect();
+    let about_sweeps = found.len();
     found.extend(warning::about_decays(&decays, &uses));
-    cubic.fitted_on = sources;
-    cubic.warnings = found.iter().map(ToString::to_string).collect();
-    warnings.extend(found);
-    Ok((cubic, decays.into_iter().zip(uses).collect()))
+    cubic.warnings = words(&found);
+    cubic.fitted_on.clone_from(&sources);
+    match Spline::fit(&decays, reference_m, settings.modulation_frequency_hz) {
+        Ok((mut spline, uses)) => {
+            let outliers = warning::about_outliers(&decays, &uses);
+            spline.warnings = words(&found[..about_sweeps]);
+            spline.warnings.extend::<Vec<String>>(words(&outliers));
+            spline.fitted_on = sources;
+            found.extend(outliers);
+            (calibration.terms.spline, report.spline_uses) = (Some(spline), uses);
+        }
+        Err(reason) => found.push(FitWarning::NoSpline { reason }),
+    }
+    calibration.terms.cubic = Some(cubic);
+    report.warnings.extend(found);
+    report.decays = decays.into_iter().zip(uses).collect();
+    Ok(())
 }
 
 /// The one time of a frame; an error message's words where there is none.

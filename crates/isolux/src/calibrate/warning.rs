@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::terms::cubic::{Decay, DecayUse, Scaling};
+use crate::terms::spline::{SplineError, SplineUse};
 
 /// One finding about a recording or a fit, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +128,20 @@ pub enum FitWarning {
         /// Integration time, µs.
         integration_time_us: Option<f64>,
     },
+    /// No spline beside the cubic.
+    NoSpline {
+        /// Why.
+        reason: SplineError,
+    },
+    /// Many positions of a decay that contradict those of the others.
+    Outliers {
+        /// Integration time, µs.
+        integration_time_us: Option<f64>,
+        /// Positions without a weight in the spline.
+        outliers: usize,
+        /// All its positions.
+        positions: usize,
+    },
 }
 
 impl fmt::Display for FitWarning {
@@ -216,6 +231,13 @@ impl fmt::Display for FitWarning {
                 "distance sweep, {}: left out, it neither reaches the reference distance nor overlaps the others",
                 time(*integration_time_us)
             ),
+            Self::NoSpline { reason } => write!(f, "distance sweep: no spline beside the cubic: {reason}"),
+            Self::Outliers { integration_time_us, outliers, positions } => write!(
+                f,
+                "distance sweep, {}: {outliers} of {positions} positions contradict the other times and do not count \
+                 in the spline: saturated, or another target",
+                time(*integration_time_us)
+            ),
         }
     }
 }
@@ -238,4 +260,19 @@ pub(super) fn about_decays(decays: &[Decay], uses: &[DecayUse]) -> Vec<FitWarnin
         }
     }
     warnings
+}
+
+/// A decay with more outliers than this share says something else than the others.
+const MANY_OUTLIERS: f64 = 1.0 / 3.0;
+
+pub(super) fn about_outliers(decays: &[Decay], uses: &[SplineUse]) -> Vec<FitWarning> {
+    let many = |(decay, used): &(&Decay, &SplineUse)| {
+        used.outliers as f64 > MANY_OUTLIERS * decay.points.len() as f64
+    };
+    let warning = |(decay, used): (&Decay, &SplineUse)| FitWarning::Outliers {
+        integration_time_us: decay.integration_time_us,
+        outliers: used.outliers,
+        positions: decay.points.len(),
+    };
+    decays.iter().zip(uses).filter(many).map(warning).collect()
 }

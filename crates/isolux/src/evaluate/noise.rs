@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::plane::{Plane, Shape};
 use crate::noise::trimmed_deviation;
+use crate::plane::{Plane, Shape};
 use crate::statistics::{Moments, SIGMA_PER_MAD, median, median_absolute_deviation, quantile};
 
 use super::fraction;

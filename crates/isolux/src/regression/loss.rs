@@ -16,7 +16,7 @@ pub enum Loss {
 
 impl Loss {
     /// Weight of a residual of `scaled` = residual/σ, 0..=1. `starting` asks for the monotone weights.
-    pub(super) fn weight(self, scaled: f64, starting: bool) -> f64 {
+    pub(crate) fn weight(self, scaled: f64, starting: bool) -> f64 {
         match self {
             Self::LeastSquares => 1.0,
             Self::Tukey if starting => (HUBER / scaled.abs().max(HUBER)).min(1.0),

@@ -30,6 +30,8 @@ pub enum TimeStep {
 pub enum DistanceStep {
     /// The calibration's cubic.
     Cubic,
+    /// The calibration's smooth law.
+    Spline,
     /// `(d / d_ref)²`.
     Square,
     /// Eq. 5 of the paper.

@@ -172,11 +172,14 @@ impl Standardizer {
             if matches!(gain, TimeGain::PerPixel) {
                 gains[..count].copy_from_slice(values);
             }
-            let block = Block {
-                amplitude,
-                distance_m: distances.map_or(&ONES[..count], |distances| &distances[start..start + count]),
-                time_gain: &gains[..count],
-            };
+            let distance_m = distances.map_or(&ONES[..count], |distances| &distances[start..start + count]);
+            if let Some(table) = &self.plan.distance_table {
+                if let TimeGain::Uniform(gain) = gain {
+                    gains[..count].fill(gain);
+                }
+                table.scale(distance_m, &mut gains[..count]);
+            }
+            let block = Block { amplitude, distance_m, time_gain: &gains[..count] };
             kernel::pointwise(block, &law, self.plan.low_signal_below_dn, values, flags);
         }
         Ok(())

@@ -5,7 +5,7 @@ use super::report::{AppliedStep, Note, PlanError};
 use crate::calibration::{Calibration, REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
 use crate::frame::Channels;
 use crate::specular::{HistogramRule, SpecularRule};
-use crate::terms::{DistanceGain, Lut, eq5, square};
+use crate::terms::{DistanceGain, DistanceTable, Lut, Spline, eq5, square};
 
 /// The integration-time step, ready to apply.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub(super) struct Plan {
     pub(super) time: TimePlan,
     /// `None` leaves the distance in.
     pub(super) distance: Option<DistanceGain>,
+    /// A factor on that law, for laws that are no polynomial.
+    pub(super) distance_table: Option<DistanceTable>,
     pub(super) specular: Option<SpecularRule>,
     pub(super) low_signal_below_dn: f32,
     pub(super) steps: Vec<AppliedStep>,
@@ -42,7 +44,7 @@ impl Plan {
         }
         let mut planner = Planner { choice, calibration, available, steps: Vec::new(), notes: Vec::new() };
         let time = planner.time()?;
-        let distance = planner.distance()?;
+        let (distance, distance_table) = planner.distance()?.unzip();
         let textbook: Vec<&str> = planner.steps.iter().map(|step| step.term).collect();
         if calibration.is_none() && !textbook.is_empty() {
             planner.notes.insert(0, Note::Textbook { terms: textbook.join(", ") });
@@ -52,6 +54,7 @@ impl Plan {
         Ok(Self {
             time,
             distance,
+            distance_table: distance_table.flatten(),
             specular,
             low_signal_below_dn: choice.low_signal_below_dn.or(floor).unwrap_or(0.0),
             steps: planner.steps,
@@ -99,11 +102,12 @@ impl Planner<'_> {
         Ok(TimePlan::Lut(lut))
     }
 
-    fn distance(&mut self) -> Result<Option<DistanceGain>, PlanError> {
+    fn distance(&mut self) -> Result<Option<(DistanceGain, Option<DistanceTable>)>, PlanError> {
         let named = self.choice.distance;
         let wanted = named.unwrap_or_else(|| self.default_distance());
         let term = match wanted {
             DistanceStep::Cubic => "cubic",
+            DistanceStep::Spline => "spline",
             DistanceStep::Square => "square",
             DistanceStep::Eq5 => "eq5",
             DistanceStep::None => return Ok(None),
@@ -112,23 +116,29 @@ impl Planner<'_> {
             return Ok(None);
         }
         let reference_m = self.calibration.map_or(REFERENCE_DISTANCE_M, |c| c.reference.distance_m);
-        let (gain, parameters) = match wanted {
-            DistanceStep::Square => (square::gain(reference_m), format!("(d / {reference_m} m)²")),
+        let fitted = |[min_m, max_m]: [f64; 2]| {
+            format!("1 at {reference_m} m, valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)")
+        };
+        let terms = self.calibration.map(|calibration| &calibration.terms);
+        let (gain, table, parameters) = match wanted {
+            DistanceStep::Square => (square::gain(reference_m), None, format!("(d / {reference_m} m)²")),
             DistanceStep::Eq5 => {
-                (eq5::gain(reference_m), format!("((2d)² + 1) / ((2·{reference_m})² + 1), d in m"))
+                (eq5::gain(reference_m), None, format!("((2d)² + 1) / ((2·{reference_m})² + 1), d in m"))
+            }
+            DistanceStep::Spline => {
+                let spline = terms.and_then(|terms| terms.spline.as_ref());
+                let spline: &Spline = spline.ok_or_else(|| self.missing(term, "--distance-sweep"))?;
+                let (gain, table) = spline.gain();
+                (gain, Some(table), fitted(spline.valid_distance_m))
             }
             DistanceStep::Cubic | DistanceStep::None => {
-                let cubic = self.calibration.and_then(|c| c.terms.cubic.as_ref());
+                let cubic = terms.and_then(|terms| terms.cubic.as_ref());
                 let cubic = cubic.ok_or_else(|| self.missing(term, "--distance-sweep"))?;
-                let [min_m, max_m] = cubic.valid_distance_m;
-                let parameters = format!(
-                    "1 at {reference_m} m, valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)"
-                );
-                (cubic.gain(), parameters)
+                (cubic.gain(), None, fitted(cubic.valid_distance_m))
             }
         };
         self.step("distance", term, parameters);
-        Ok(Some(gain))
+        Ok(Some((gain, table)))
     }
 
     fn specular(&mut self) -> Option<SpecularRule> {
@@ -159,6 +169,7 @@ impl Planner<'_> {
         match (self.choice.method, self.calibration) {
             (Method::Paper, _) => DistanceStep::Cubic,
             (Method::Best, None) => DistanceStep::Square,
+            (Method::Best, Some(calibration)) if calibration.terms.spline.is_some() => DistanceStep::Spline,
             (Method::Best, Some(calibration)) if calibration.terms.cubic.is_some() => DistanceStep::Cubic,
             (Method::Best, Some(_)) => {
                 if self.available.contains(Channels::DISTANCE) {

@@ -5,13 +5,17 @@ pub mod cubic;
 pub mod eq5;
 pub mod linear;
 pub mod lut;
+pub mod spline;
 pub mod square;
 
 mod polynomial;
+mod table;
 
 pub use cubic::Cubic;
 pub use lut::Lut;
 pub use polynomial::DistanceGain;
+pub use spline::Spline;
+pub use table::DistanceTable;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,222 @@
+//! From reference decays to a [`Spline`].
+//!
+//! A scalar table over integration time multiplies each decay by one number, which the decay's level takes up: the
+//! fit is the same with it and without. What such a table says of compression (S(t) t / t_ref) is that of its own
+//! wall, at one amplitude per time; the board's positions fill the pixels otherwise, so no position is corrected by
+//! it. Compressed positions are outliers to the majority of the times that see the same distance uncompressed.
+
+use super::basis::Basis;
+use super::rows::{Model, Rows, count_positions};
+use super::select::{best, reweighted};
+use super::{Harmonic, Spline};
+use crate::statistics::median;
+use crate::terms::cubic::{Decay, Scaling};
+use crate::terms::{FitQuality, root_mean_square};
+
+/// Equal intervals of ln d between the outermost positions; the curvature weight makes it smooth, not their number.
+const INTERVALS: usize = 24;
+
+/// What became of one reference decay in the fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SplineUse {
+    /// Integration time of the decay, µs.
+    pub integration_time_us: Option<f64>,
+    /// Whether it covers the reference distance, is placed by the others, or is left out.
+    pub scaling: Scaling,
+    /// Root mean square of the relative error that the law leaves on the positions that have a weight.
+    pub residual: Option<f64>,
+    /// Positions without a weight: outliers to the others.
+    pub outliers: usize,
+}
+
+/// Why no spline could be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SplineError {
+    /// Too few positions.
+    #[error(
+        "{found} positions found, at least {} expected: record the target at more distances",
+        Spline::LEAST_POSITIONS
+    )]
+    TooFewPositions {
+        /// Number found.
+        found: usize,
+    },
+    /// The decays do not reach the reference distance.
+    #[error(
+        "no reference decay covers the reference distance of {reference_m} m: record there, or choose another with \
+         --reference-distance-m"
+    )]
+    ReferenceOutside {
+        /// Reference asked for, m.
+        reference_m: f64,
+    },
+    /// The positions do not determine the law.
+    #[error("the positions do not determine a law over distance: record more distances, evenly spread")]
+    Undetermined,
+    /// The law is beyond all reason somewhere.
+    #[error("the law is impossible ({found}): record more distances, evenly spread")]
+    Impossible {
+        /// What is.
+        found: String,
+    },
+}
+
+impl Spline {
+    /// Positions that a spline needs; with fewer it would follow the noise of each.
+    pub const LEAST_POSITIONS: usize = 8;
+
+    /// Fits the law to reference decays of any number of integration times; says for each how it was used.
+    ///
+    /// Every decay has a level of its own, so that one that does not reach the reference distance is placed by its
+    /// overlap with the others; one without any is left out. Robust: Tukey's biweight, c = 4.685 σ, σ = 1.4826 MAD.
+    /// The curvature weight is chosen from 10^(k/2), 1e-9 to 1e2, by five-fold cross-validation over positions,
+    /// and so is whether the harmonic is used, when `modulation_frequency_hz` is known. Held-out residual: each
+    /// decay predicted from the others but for its level or, with one decay, each inner position from the rest.
+    ///
+    /// # Errors
+    /// [`SplineError`] when the positions are too few, none covers the reference, or the law is impossible.
+    pub fn fit(
+        decays: &[Decay],
+        reference_m: f64,
+        modulation_frequency_hz: Option<f64>,
+    ) -> Result<(Self, Vec<SplineUse>), SplineError> {
+        let (used, range) = connected(decays, reference_m)?;
+        let chosen: Vec<&Decay> = used.iter().map(|&index| &decays[index]).collect();
+        let distances: Vec<f64> = chosen.iter().flat_map(|d| d.points.iter().map(|p| p.distance_m)).collect();
+        let found = count_positions(&distances);
+        if found < Self::LEAST_POSITIONS {
+            return Err(SplineError::TooFewPositions { found });
+        }
+        let basis = Basis::new(range[0].ln(), range[1].ln(), INTERVALS);
+        let frequency_hz = modulation_frequency_hz.filter(|f| *f > 0.0 && f.is_finite());
+        let rows = Rows::new(&chosen, basis, reference_m, frequency_hz);
+        let robust = best(&rows, frequency_hz.is_some()).ok_or(SplineError::Undetermined)?;
+        let relative = |row: usize| robust.solution.residuals[row].exp_m1();
+        let mut spline = Self {
+            version: Self::VERSION,
+            reference_distance_m: reference_m,
+            valid_distance_m: range,
+            coefficients: robust.solution.coefficients[..basis.len()].to_vec(),
+            harmonic: frequency_hz.filter(|_| robust.model.harmonic).map(|modulation_frequency_hz| {
+                Harmonic {
+                    modulation_frequency_hz,
+                    cosine: robust.solution.coefficients[basis.len()],
+                    sine: robust.solution.coefficients[basis.len() + 1],
+                }
+            }),
+            curvature_weight: robust.model.curvature_weight,
+            fitted_on: Vec::new(),
+            fit: FitQuality {
+                points: rows.len(),
+                residual: root_mean_square((0..rows.len()).map(relative).filter(|r| r.is_finite()))
+                    .unwrap_or(0.0),
+                held_out_residual: held_out(&rows, robust.model, &robust.weights),
+            },
+            warnings: Vec::new(),
+        };
+        // The gauge: B-splines sum to 1, so a constant added to all adds it to ln h.
+        let at_reference = spline.ln_response(reference_m);
+        spline.coefficients.iter_mut().for_each(|c| *c -= at_reference);
+        spline.check().map_err(|error| SplineError::Impossible { found: error.to_string() })?;
+        let report = |(index, decay): (usize, &Decay)| {
+            let number = used.iter().position(|&used| used == index);
+            let points = || (0..rows.len()).filter(|&row| Some(rows.decay[row]) == number);
+            let kept = points().filter(|&row| robust.weights[row] > 0.0);
+            let covers = covers(decay, reference_m);
+            SplineUse {
+                integration_time_us: decay.integration_time_us,
+                scaling: match number {
+                    None => Scaling::LeftOut,
+                    Some(_) if covers => Scaling::AtReference,
+                    Some(_) => Scaling::OntoOthers,
+                },
+                residual: root_mean_square(kept.map(relative)),
+                outliers: points().filter(|&row| robust.weights[row] == 0.0).count(),
+            }
+        };
+        let uses = decays.iter().enumerate().map(report).collect();
+        Ok((spline, uses))
+    }
+}
+
+fn range_of(decay: &Decay) -> [f64; 2] {
+    let distances = decay.points.iter().map(|point| point.distance_m);
+    distances.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], d| [min.min(d), max.max(d)])
+}
+
+fn covers(decay: &Decay, reference_m: f64) -> bool {
+    let [min_m, max_m] = range_of(decay);
+    (min_m..=max_m).contains(&reference_m)
+}
+
+/// The decays that overlap, directly or through others, one that covers the reference, and the range of all of them.
+/// A single point says nothing beyond its own level, and a value that has no logarithm nothing at all.
+fn connected(decays: &[Decay], reference_m: f64) -> Result<(Vec<usize>, [f64; 2]), SplineError> {
+    let usable = |decay: &Decay| {
+        let fine = |x: f64| x > 0.0 && x.is_finite();
+        decay.points.len() >= 2 && decay.points.iter().all(|p| fine(p.distance_m) && fine(p.amplitude_dn))
+    };
+    let candidates: Vec<usize> = (0..decays.len()).filter(|&index| usable(&decays[index])).collect();
+    if candidates.is_empty() {
+        return Err(SplineError::TooFewPositions { found: 0 });
+    }
+    let anchored = candidates.iter().copied().filter(|&index| covers(&decays[index], reference_m));
+    let mut used: Vec<usize> = anchored.collect();
+    if used.is_empty() {
+        return Err(SplineError::ReferenceOutside { reference_m });
+    }
+    let whole = |used: &[usize]| {
+        let ranges = used.iter().map(|&index| range_of(&decays[index]));
+        ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], [a, b]| [min.min(a), max.max(b)])
+    };
+    loop {
+        let [min_m, max_m] = whole(&used);
+        let overlaps = |index: &usize| {
+            let [near_m, far_m] = range_of(&decays[*index]);
+            !used.contains(index) && near_m <= max_m && far_m >= min_m
+        };
+        match candidates.iter().copied().find(overlaps) {
+            Some(index) => used.push(index),
+            None => {
+                used.sort_unstable();
+                let range = whole(&used);
+                return Ok((used, range));
+            }
+        }
+    }
+}
+
+/// Relative error (root mean square) on points that the fit has not seen.
+fn held_out(rows: &Rows, model: Model, weights: &[f64]) -> Option<f64> {
+    let groups = if rows.decays >= 2 { rows.decays } else { rows.positions };
+    let group = |row: usize| if rows.decays >= 2 { rows.decay[row] } else { rows.position[row] };
+    let mut errors = Vec::new();
+    for left_out in 0..groups {
+        if rows.decays < 2 && (left_out == 0 || left_out + 1 == groups) {
+            continue;
+        }
+        let prior =
+            (0..rows.len()).map(|row| f64::from(u8::from(group(row) != left_out))).collect::<Vec<_>>();
+        let Some(fit) = reweighted(rows, model, &prior) else { continue };
+        let tested: Vec<usize> = (0..rows.len())
+            .filter(|&row| group(row) == left_out && rows.is_inside(row, &fit.weights))
+            .collect();
+        let mut errors_here: Vec<f64> = tested.iter().map(|&row| rows.error(row, &fit.solution)).collect();
+        if rows.decays >= 2 {
+            // The level of a decay is its own: that of its majority.
+            let trusted = tested.iter().zip(&errors_here).filter(|(row, _)| weights[**row] > 0.0);
+            let Some(level) = median(&mut trusted.map(|(_, error)| *error).collect::<Vec<_>>()) else {
+                continue;
+            };
+            errors_here.iter_mut().for_each(|error| *error -= level);
+        } else {
+            errors_here
+                .iter_mut()
+                .zip(&tested)
+                .for_each(|(error, &row)| *error = fit.solution.residuals[row]);
+        }
+        errors.extend(errors_here.into_iter().map(f64::exp_m1));
+    }
+    root_mean_square(errors)
+}
