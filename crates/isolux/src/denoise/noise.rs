@@ -1,8 +1,8 @@
 //! How noisy the distances of a frame are: `σ_d² = k / a²`.
 //!
 //! `σ_d = c / (4√2 π f) · σ_n / a` (error propagation through eq. 1). Frequency and bin noise are seldom known, and
-//! the distances tell the product of both themselves: second differences along the rows cancel every even slope,
-//! and the median of their magnitudes passes over edges.
+//! the distances tell the product of both themselves: the mixed second difference of 2×2 pixels cancels every slope and
+//! every edge along a row or column, and the median of its magnitude passes over the others.
 
 use super::Image;
 
@@ -27,13 +27,19 @@ impl NoiseScale {
     pub(super) fn estimate(&mut self, image: Image<'_>) -> f64 {
         self.bins.clear();
         self.bins.resize(BINS, 0);
+        let width = image.shape.width;
+        if width < 2 || image.shape.height < 2 {
+            return 0.0;
+        }
         let step = (image.distance_m.len() / SAMPLES).max(1);
-        let width = image.shape.width.max(1);
-        let rows = image.distance_m.chunks(width).zip(image.amplitude.chunks(width)).step_by(step);
+        let row = |y: usize| y * width..(y + 1) * width;
         let mut count = 0;
-        for (distances, amplitudes) in rows {
-            for (d, a) in distances.windows(3).zip(amplitudes.windows(3)) {
-                let magnitude = normalized_second_difference(d, a);
+        for y in (0..image.shape.height - 1).step_by(step) {
+            let [distances, amplitudes] =
+                [image.distance_m, image.amplitude].map(|plane| [&plane[row(y)], &plane[row(y + 1)]]);
+            for x in 0..width - 1 {
+                let corners = |[above, below]: [&[f32]; 2]| [above[x], above[x + 1], below[x], below[x + 1]];
+                let magnitude = normalized_difference(corners(distances), corners(amplitudes));
                 if magnitude.is_finite() {
                     self.bins[(magnitude.to_bits() >> SHIFT) as usize] += 1;
                     count += 1;
@@ -63,9 +69,9 @@ impl NoiseScale {
     }
 }
 
-/// `|d₋ − 2 d + d₊|` over its standard deviation at k = 1, √(1/a₋² + 4/a² + 1/a₊²); NaN where a pixel is invalid.
-fn normalized_second_difference(d: &[f32], a: &[f32]) -> f32 {
-    let [d0, d1, d2] = [d[0], d[1], d[2]].map(f64::from);
-    let [v0, v1, v2] = [a[0], a[1], a[2]].map(|a| 1.0 / (f64::from(a) * f64::from(a)));
-    ((d0 - 2.0 * d1 + d2).abs() / (v0 + 4.0 * v1 + v2).sqrt()) as f32
+/// `|d₁ − d₂ − d₃ + d₄|` over its standard deviation at k = 1, √(Σ 1/a²); NaN where a pixel is invalid.
+fn normalized_difference(distance_m: [f32; 4], amplitude: [f32; 4]) -> f32 {
+    let [d1, d2, d3, d4] = distance_m.map(f64::from);
+    let [v1, v2, v3, v4] = amplitude.map(|a| 1.0 / (f64::from(a) * f64::from(a)));
+    (((d1 - d2) - (d3 - d4)).abs() / (v1 + v2 + v3 + v4).sqrt()) as f32
 }

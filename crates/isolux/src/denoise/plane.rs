@@ -1,9 +1,10 @@
 //! `plane`: in the 7×7 pixels around each, a plane is fitted to those that lie on the same surface.
 //!
-//! Which do, the [`super::wiener`] image says: where it departs from the plane through the middle pixel by more than
-//! its own noise allows, a pixel counts less, and not at all beyond three standard deviations (Tukey's biweight).
-//! The plane itself is fitted to the measured distances, weighted by `1/σ_d²`; the fit and the choice of pixels take
-//! turns. A plane, unlike a mean, bends no slanted surface, and uneven weights do not tilt it: the texture of the
+//! Which do, the [`super::wiener`] image says: where it departs from the plane by more than its own noise allows, a
+//! pixel counts less, and not at all beyond three standard deviations (Tukey's biweight). A first plane starts level
+//! and is fitted to that image; the second is fitted to the measured distances that lie on the first, weighted by
+//! `1/σ_d²`, and gives the answer. Measured distances do not choose their own company: that would let the noise
+//! decide. A plane, unlike a mean, bends no slanted surface, and uneven weights do not tilt it: the texture of the
 //! amplitude stays out.
 
 use super::Image;
@@ -11,13 +12,11 @@ use super::wiener::Wiener;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 3;
-/// Fits in turn with choices.
-const FITS: usize = 3;
 /// Beyond this many standard deviations a pixel belongs to another surface.
 const CUTOFF: f64 = 3.0;
-/// Variance that 5×5 pixels leave of one pixel's where nothing is detail: that of two boxes one after the other,
-/// (Σ of the squared weights 1 2 3 4 5 4 3 2 1 over their squared sum)² = (85/625)², and a third more for edges.
-const SMOOTHED_VARIANCE: f64 = 0.025;
+/// Variance that the guide keeps of one pixel's where nothing is detail: (85/625)² = 0.018 would be left by two
+/// boxes of 5×5 one after the other, but the noise passes for detail here and there. Measured on flat areas.
+const SMOOTHED_VARIANCE: f64 = 0.06;
 /// Pixels in less than two dimensions determine no plane: least ratio of the determinant of their spread to the
 /// square of half its trace.
 const LEAST_SPREAD: f64 = 1e-3;
@@ -56,37 +55,21 @@ impl Guide {
 
     fn pixel(&self, image: Image<'_>, k: f64, index: usize) -> f32 {
         let (y, x) = (index / image.shape.width, index % image.shape.width);
-        let mut surface = self.start(image, y, x);
-        for _ in 0..FITS {
-            surface = self.fit(image, k, (y, x), surface);
-        }
+        let level = Surface { middle: f64::from(self.distance_m[index]), along_x: 0.0, along_y: 0.0 };
+        let roughly = self.fit(image, k, (y, x), level, &self.distance_m);
+        let surface = self.fit(image, k, (y, x), roughly, image.distance_m);
         surface.middle as f32
     }
 
-    /// Through the guide's middle pixel, with the smaller of the slopes to either side: the one that does not cross
-    /// an edge.
-    fn start(&self, image: Image<'_>, y: usize, x: usize) -> Surface {
-        let width = image.shape.width;
-        let index = y * width + x;
-        let middle = f64::from(self.distance_m[index]);
-        let slope = |before: Option<usize>, after: Option<usize>| {
-            let to =
-                |index: Option<usize>| index.map_or(f64::NAN, |i| f64::from(self.distance_m[i]) - middle);
-            let (back, forth) = (-to(before), to(after));
-            if back * forth > 0.0 { back.signum() * back.abs().min(forth.abs()) } else { 0.0 }
-        };
-        Surface {
-            middle,
-            along_x: slope((x > 0).then(|| index - 1), (x + 1 < width).then(|| index + 1)),
-            along_y: slope(
-                (y > 0).then(|| index - width),
-                (y + 1 < image.shape.height).then(|| index + width),
-            ),
-        }
-    }
-
-    /// Weighted least squares around `known`.
-    fn fit(&self, image: Image<'_>, k: f64, (y, x): (usize, usize), known: Surface) -> Surface {
+    /// Weighted least squares of `values_m` around `known`.
+    fn fit(
+        &self,
+        image: Image<'_>,
+        k: f64,
+        (y, x): (usize, usize),
+        known: Surface,
+        values_m: &[f32],
+    ) -> Surface {
         let (height, width) = (image.shape.height, image.shape.width);
         let mut sums = Sums::default();
         for row in y.saturating_sub(RADIUS)..(y + RADIUS + 1).min(height) {
@@ -97,7 +80,9 @@ impl Guide {
                 let plane = known.middle + known.along_x * dx + known.along_y * dy;
                 let weight = self.weight(image, k, index, plane);
                 if weight > 0.0 {
-                    sums.add(weight, dx, dy, f64::from(image.distance_m[index]) - plane);
+                    let value = f64::from(values_m[index]);
+                    sums.add(weight, dx, dy, value - plane);
+                    sums.widen(value);
                 }
             }
         }
@@ -106,6 +91,9 @@ impl Guide {
 
     /// `a²`, reduced by the biweight of the guide's distance from the plane; 0 where the pixel takes no part.
     fn weight(&self, image: Image<'_>, k: f64, index: usize, plane: f64) -> f64 {
+        if image.distance_m[index].is_nan() {
+            return 0.0;
+        }
         let amplitude = f64::from(image.amplitude[index]);
         let trust = amplitude * amplitude;
         let departure = f64::from(self.distance_m[index]) - plane;
@@ -128,6 +116,8 @@ struct Sums {
     r: f64,
     xr: f64,
     yr: f64,
+    /// Least and greatest value.
+    range: Option<(f64, f64)>,
 }
 
 impl Sums {
@@ -143,23 +133,27 @@ impl Sums {
         self.yr += w * y * r;
     }
 
+    fn widen(&mut self, value: f64) {
+        let (low, high) = self.range.unwrap_or((value, value));
+        self.range = Some((low.min(value), high.max(value)));
+    }
+
     /// The known plane corrected by that of the residuals; by their mean alone where the pixels determine no plane.
+    /// In the middle it stays within the values that it is fitted to: nothing is extrapolated.
     fn surface(&self, known: Surface) -> Surface {
-        if self.w <= 0.0 {
-            return known;
-        }
+        let Some((low, high)) = self.range else { return known };
         let [x, y, r] = [self.x, self.y, self.r].map(|sum| sum / self.w);
         let [xx, xy, yy] = [self.xx / self.w - x * x, self.xy / self.w - x * y, self.yy / self.w - y * y];
         let [xr, yr] = [self.xr / self.w - x * r, self.yr / self.w - y * r];
         let determinant = xx * yy - xy * xy;
         let half_trace = 0.5 * (xx + yy);
         if determinant <= LEAST_SPREAD * half_trace * half_trace {
-            return Surface { middle: known.middle + r, ..known };
+            return Surface { middle: (known.middle + r).clamp(low, high), ..known };
         }
         let along_x = (xr * yy - yr * xy) / determinant;
         let along_y = (yr * xx - xr * xy) / determinant;
         Surface {
-            middle: known.middle + r - along_x * x - along_y * y,
+            middle: (known.middle + r - along_x * x - along_y * y).clamp(low, high),
             along_x: known.along_x + along_x,
             along_y: known.along_y + along_y,
         }

@@ -72,20 +72,15 @@ fn window(frame: &Frame, index: usize, radius: i64) -> Vec<(i64, i64, f64, f64)>
 
 /// The estimate of k with a sorted list in place of the bins.
 fn naive_k(frame: &Frame) -> f64 {
-    let mut normalized = Vec::new();
-    for index in 0..frame.shape().pixels() {
-        let column = index % frame.shape().width;
-        if column == 0
-            || column + 1 == frame.shape().width
-            || !(index - 1..=index + 1).all(|i| takes_part(frame, i))
-        {
+    let (mut normalized, width) = (Vec::new(), frame.shape().width);
+    for index in 0..frame.shape().pixels() - width {
+        let corners = [index, index + 1, index + width, index + width + 1];
+        if index % width + 1 == width || !corners.iter().all(|&i| takes_part(frame, i)) {
             continue;
         }
-        let d = |i: usize| f64::from(distances(frame)[i]);
-        let inverse = |i: usize| f64::from(frame.amplitude.values()[i]).powi(-2);
-        let difference = d(index - 1) - 2.0 * d(index) + d(index + 1);
-        let variance = inverse(index - 1) + 4.0 * inverse(index) + inverse(index + 1);
-        normalized.push(difference.abs() / variance.sqrt());
+        let [a, b, c, d] = corners.map(|i| f64::from(distances(frame)[i]));
+        let variance: f64 = corners.iter().map(|&i| f64::from(frame.amplitude.values()[i]).powi(-2)).sum();
+        normalized.push((a - b - c + d).abs() / variance.sqrt());
     }
     normalized.sort_by(f64::total_cmp);
     if normalized.len() < 16 { 0.0 } else { (1.4826 * normalized[normalized.len() / 2]).powi(2) }
@@ -111,7 +106,7 @@ fn with_image<T>(frame: &Frame, work: impl FnOnce(Image<'_>) -> T) -> T {
     work(Image { shape: frame.shape(), distance_m: &measured_m, amplitude })
 }
 
-/// Methods, section 5, word for word: α and m of the window around a pixel.
+/// The filter's definition, word for word: α and m of the window around a pixel.
 fn naive_window(frame: &Frame, k: f64, index: usize) -> (f64, f64) {
     let sigma2 = |a: f64| k / (a * a);
     let pixels = window(frame, index, 2);
@@ -120,7 +115,10 @@ fn naive_window(frame: &Frame, k: f64, index: usize) -> (f64, f64) {
     let m = sum(&|a, d| d / sigma2(a)) / w;
     let v = sum(&|a, d| d * d / sigma2(a)) / w - m * m;
     let n2 = sum(&|a, _| sigma2(a) / sigma2(a)) / w;
-    (((v - n2) / v).clamp(0.0, 1.0), m)
+    if v <= n2 {
+        return (0.0, m);
+    }
+    ((1.0 - (1.15 * n2 / v).powi(2)).clamp(0.0, 1.0), m)
 }
 
 /// The denoised distance and the mean α of every pixel; NaN where it takes no part.
@@ -152,33 +150,21 @@ fn naive_median(frame: &Frame, index: usize) -> f64 {
 /// The plane fit by the normal equations of all three coefficients and Cramer's rule.
 fn naive_plane(frame: &Frame, k: f64, guide: &[(f64, f64)], index: usize) -> f64 {
     let width = frame.shape().width as i64;
-    let at = |dy: i64, dx: i64| {
-        let inside = window(frame, index, 1).iter().any(|(y, x, ..)| (*y, *x) == (dy, dx));
-        if inside { guide[(index as i64 + dy * width + dx) as usize].0 } else { f64::NAN }
-    };
-    let middle = at(0, 0);
-    let slope = |before: f64, after: f64| {
-        let (back, forth) = (middle - before, after - middle);
-        if back * forth <= 0.0 || (back * forth).is_nan() {
-            0.0
-        } else if back.abs() < forth.abs() {
-            back
-        } else {
-            forth
-        }
-    };
-    let mut plane = [middle, slope(at(0, -1), at(0, 1)), slope(at(-1, 0), at(1, 0))];
-    for _ in 0..3 {
+    let mut plane = [guide[index].0, 0.0, 0.0];
+    for fit in 0..2 {
         let mut normal = [[0.0; 3]; 3];
         let mut right = [0.0; 3];
+        let mut values = Vec::new();
         for (dy, dx, a, d) in window(frame, index, 3) {
             let basis = [1.0, dx as f64, dy as f64];
             let at_plane: f64 = plane.iter().zip(basis).map(|(p, b)| p * b).sum();
             let (g, alpha) = guide[(index as i64 + dy * width + dx) as usize];
-            let u = (g - at_plane).powi(2) / (9.0 * (0.025 + 0.975 * alpha * alpha) * k / (a * a));
+            let value = [g, d][fit];
+            let u = (g - at_plane).powi(2) / (9.0 * (0.06 + 0.94 * alpha * alpha) * k / (a * a));
             let weight = if u < 1.0 { a * a * (1.0 - u).powi(2) } else { 0.0 };
+            values.extend((weight > 0.0).then_some(value));
             for i in 0..3 {
-                right[i] += weight * basis[i] * (d - at_plane);
+                right[i] += weight * basis[i] * (value - at_plane);
                 (0..3).for_each(|j| normal[i][j] += weight * basis[i] * basis[j]);
             }
         }
@@ -191,6 +177,7 @@ fn naive_plane(frame: &Frame, k: f64, guide: &[(f64, f64)], index: usize) -> f64
         let trace = spread(1, 1) + spread(2, 2);
         if spread(1, 1) * spread(2, 2) - spread(1, 2).powi(2) <= 1e-3 * (0.5 * trace).powi(2) {
             plane[0] += right[0] / total;
+            plane[0] = within(plane[0], &values);
             continue;
         }
         let determinant = |m: [[f64; 3]; 3]| {
@@ -204,8 +191,13 @@ fn naive_plane(frame: &Frame, k: f64, guide: &[(f64, f64)], index: usize) -> f64
             (0..3).for_each(|row| replaced[row][i] = right[row]);
             *coefficient += determinant(replaced) / whole;
         }
+        plane[0] = within(plane[0], &values);
     }
     plane[0]
+}
+
+fn within(value: f64, values: &[f64]) -> f64 {
+    value.clamp(values.iter().copied().fold(f64::MAX, f64::min), values.iter().copied().fold(0.0, f64::max))
 }
 
 fn bits(values: &[f32]) -> Vec<u32> {
@@ -255,7 +247,7 @@ proptest! {
             }
             let again = denoise(rule, &spoilt);
             for index in (0..SHAPE.pixels()).filter(|&index| takes_part(&frame, index)) {
-                prop_assert!(found[index] > 0.0 && found[index].is_finite() || rule == DenoiseRule::Plane);
+                prop_assert!(found[index] > 0.0 && found[index].is_finite());
                 prop_assert_eq!(found[index].to_bits(), again[index].to_bits());
             }
         }
