@@ -5,8 +5,10 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
-use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer};
+use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::{
+    Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer,
+};
 
 const SHAPES: [Shape; 2] = [Shape::new(144, 176), Shape::new(1000, 1000)];
 
@@ -31,12 +33,11 @@ fn frame(shape: Shape, per_pixel: bool) -> Frame {
 }
 
 fn standardize(bencher: Bencher, shape: Shape, per_pixel: bool, specular: Option<SpecularStep>) {
-    let choice = Choice {
-        time: Some(TimeStep::Linear),
-        distance: Some(DistanceStep::Eq5),
-        specular,
-        ..Choice::default()
-    };
+    apply(bencher, shape, per_pixel, Choice { specular, ..Choice::default() });
+}
+
+fn apply(bencher: Bencher, shape: Shape, per_pixel: bool, choice: Choice) {
+    let choice = Choice { time: Some(TimeStep::Linear), distance: Some(DistanceStep::Eq5), ..choice };
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
     let standardizer =
         Standardizer::plan(&choice, None, channels).expect("textbook steps need no calibration");
@@ -71,4 +72,24 @@ fn pointwise_time_per_pixel(bencher: Bencher, shape: Shape) {
 #[divan::bench(args = SHAPES)]
 fn with_histogram(bencher: Bencher, shape: Shape) {
     standardize(bencher, shape, false, None);
+}
+
+fn denoised(bencher: Bencher, shape: Shape, rule: DenoiseRule) {
+    let denoise = Some(DenoiseStep::Smooth(rule));
+    apply(bencher, shape, false, Choice { denoise, specular: Some(SpecularStep::None), ..Choice::default() });
+}
+
+#[divan::bench(args = SHAPES)]
+fn denoised_by_median(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Median);
+}
+
+#[divan::bench(args = SHAPES)]
+fn denoised_by_wiener(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Wiener);
+}
+
+#[divan::bench(args = SHAPES, sample_count = 5)]
+fn denoised_by_plane(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Plane);
 }
