@@ -245,7 +245,7 @@ fn the_amplitudes_texture_does_not_leak_into_the_distance() {
     let bright = |row, column| inner(row, column) && reflectivity.get(row, column).unwrap() > 0.7;
     let dark = |row, column| inner(row, column) && reflectivity.get(row, column).unwrap() <= 0.7;
     for rule in RULES {
-        let leak = distance_bias(&frames, rule, &bright) - distance_bias(&frames, rule, &dark);
+        let leak = distance_bias(&frames, rule, bright) - distance_bias(&frames, rule, dark);
         println!("checkerboard, {}: bright less dark squares {:+.2} mm", rule.name(), 1000.0 * leak);
         assert!(leak.abs() <= 0.005, "{rule:?} {leak}");
     }
