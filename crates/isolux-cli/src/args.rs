@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use isolux::calibration::{REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
 use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
-use isolux::standardize::{DistanceStep, Method, SpecularStep, TimeStep};
-use isolux::{Choice, SpecularRule};
+use isolux::standardize::{DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::{Choice, DenoiseRule, SpecularRule};
 
 /// Makes the amplitude images of time-of-flight cameras comparable: one material has one value, whatever the
 /// integration time and the distance, without specular outliers.
@@ -117,7 +117,8 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -o desk-standardized\n  \
     isolux standardize desk -c CAMERA.json -o desk-standardized.npz --keep-input\n  \
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
-    isolux standardize desk -o out --time linear --distance none")]
+    isolux standardize desk -o out --time linear --distance none\n  \
+    isolux standardize desk -c CAMERA.json -o out --denoise wiener")]
 pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]
@@ -156,6 +157,9 @@ pub(crate) struct StepArgs {
     /// Step for the distance [default: by method]
     #[arg(long, value_enum)]
     pub(crate) distance: Option<DistanceArg>,
+    /// Denoise the distance before it scales, where a distance step is applied [default: none]
+    #[arg(long, value_enum)]
+    pub(crate) denoise: Option<DenoiseArg>,
     /// Step for highlights [default: histogram]
     #[arg(long, value_enum)]
     pub(crate) specular: Option<SpecularArg>,
@@ -326,6 +330,20 @@ pub(crate) enum DistanceArg {
     None,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum DenoiseArg {
+    /// Scale by the distance as it was delivered
+    None,
+    /// Median of 3×3 pixels
+    Median,
+    /// Local Wiener filter of 5×5 pixels: the fast one
+    Wiener,
+    /// Plane fits in 7×7 pixels: the one for slanted surfaces and quality
+    Plane,
+    /// Mean over the last 8 frames, for still scenes
+    Temporal,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SpecularArg {
     /// Limit at the highest value with enough pixels
@@ -357,8 +375,15 @@ impl StepArgs {
             DistanceArg::Eq5 => DistanceStep::Eq5,
             DistanceArg::None => DistanceStep::None,
         });
+        let denoise = self.denoise.map(|denoise| match denoise {
+            DenoiseArg::None => DenoiseStep::None,
+            DenoiseArg::Median => DenoiseStep::Smooth(DenoiseRule::Median),
+            DenoiseArg::Wiener => DenoiseStep::Smooth(DenoiseRule::Wiener),
+            DenoiseArg::Plane => DenoiseStep::Smooth(DenoiseRule::Plane),
+            DenoiseArg::Temporal => DenoiseStep::Smooth(DenoiseRule::Temporal),
+        });
         let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
-        Ok(Choice { method, time, distance, specular: Some(self.specular()?), low_signal_below_dn })
+        Ok(Choice { method, time, denoise, distance, specular: Some(self.specular()?), low_signal_below_dn })
     }
 
     fn specular(&self) -> Result<SpecularStep, crate::failure::Failure> {

@@ -7,6 +7,7 @@ use isolux::motion::MotionWatch;
 use isolux::{Calibration, Channels, Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
 use isolux_io::Recording;
 
+use crate::chain::{Chain, Smoothed};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
@@ -57,10 +58,11 @@ pub(crate) fn assess(
     let reference = nearest_reference(times.iter().copied(), reference_us);
     if let Some(index) = reference {
         let mut frame = Frame::new(metadata.shape);
-        recording.read_frame(index, wanted, &mut frame)?;
+        evaluation.chain.read_alone(recording, index, wanted, &mut frame)?;
         evaluation
             .take(&frame, |evaluator, frame| evaluator.set_reference(frame))
             .map_err(|e| Failure::frame(&metadata.path, index, e))?;
+        evaluation.chain.restart();
     }
     let (mut motion, mut last_us) = (MotionWatch::default(), None);
     frames::for_each(recording, wanted, "evaluating", |index, frame| {
@@ -113,7 +115,8 @@ fn shown_frames(times: &[Option<f64>], reference: Option<usize>) -> Vec<usize> {
 
 /// The two evaluators and what makes the second's frames.
 struct Both<'a> {
-    standardizer: &'a Standardizer,
+    chain: Chain<'a>,
+    smoothed: Smoothed,
     pixels: Pixels,
     out: Standardized,
     trusted: Plane<PixelFlags>,
@@ -151,10 +154,12 @@ fn add(sums: &mut (f64, f64), values: &Plane<f32>, flags: &Plane<PixelFlags>) {
 impl<'a> Both<'a> {
     fn new(metadata: &isolux_io::Metadata, standardizer: &'a Standardizer, pixels: Pixels) -> Self {
         let evaluator = || Evaluator::new(metadata.shape, EvaluationSettings::default());
+        let chain = Chain::new(standardizer);
         let out = Standardized::new(metadata.shape);
         let trusted = Plane::filled(metadata.shape, PixelFlags::empty());
         Self {
-            standardizer,
+            smoothed: chain.smoothed(),
+            chain,
             pixels,
             out,
             trusted,
@@ -165,7 +170,7 @@ impl<'a> Both<'a> {
     }
 
     fn take(&mut self, frame: &Frame, pass: Pass) -> Result<(), isolux::standardize::StandardizeError> {
-        self.standardizer.apply(frame, &mut self.out)?;
+        self.chain.standardize(frame, &mut self.smoothed, &mut self.out)?;
         if self.pixels == Pixels::Trusted {
             mark_distrusted(&self.out.flags, &mut self.trusted);
         }

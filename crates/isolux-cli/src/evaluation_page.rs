@@ -8,6 +8,7 @@ use isolux_report::page::{
 };
 
 use crate::assessment::Assessment;
+use crate::chain::Chain;
 use crate::failure::{Failure, Outcome};
 
 /// Share of the valid pixels that the white end of a grey scale covers.
@@ -125,11 +126,15 @@ pub(crate) fn pictures(
 ) -> Outcome<Vec<Picture>> {
     let metadata = recording.metadata().clone();
     let (mut frame, mut out) = (Frame::new(metadata.shape), Standardized::new(metadata.shape));
+    let mut chain = Chain::new(standardizer);
+    let mut smoothed = chain.smoothed();
     let (mut raw, mut standardized) = (Vec::new(), Vec::new());
     for &index in indices {
         let wanted = standardizer.needed() | isolux::Channels::INTEGRATION_TIME;
-        recording.read_frame(index, wanted, &mut frame)?;
-        standardizer.apply(&frame, &mut out).map_err(|error| Failure::frame(&metadata.path, index, error))?;
+        chain.read_alone(recording, index, wanted, &mut frame)?;
+        chain
+            .standardize(&frame, &mut smoothed, &mut out)
+            .map_err(|error| Failure::frame(&metadata.path, index, error))?;
         let time = match &frame.integration_time_us {
             IntegrationTime::PerFrame(time_us) => format!("{} ms", time_us / 1000.0),
             _ => format!("frame {index}"),

@@ -2,6 +2,7 @@
 
 mod args;
 mod assessment;
+mod chain;
 mod cmd;
 mod console;
 mod evaluation_page;

@@ -5,12 +5,12 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
+use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::Spline;
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::{
-    Calibration, Channels, Choice, Frame, IntegrationTime, Plane, Reference, Shape, Standardized,
-    Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Reference, Shape,
+    Standardized, Standardizer,
 };
 
 const SHAPES: [Shape; 2] = [Shape::new(144, 176), Shape::new(1000, 1000)];
@@ -36,18 +36,13 @@ fn frame(shape: Shape, per_pixel: bool) -> Frame {
 }
 
 fn standardize(bencher: Bencher, shape: Shape, per_pixel: bool, specular: Option<SpecularStep>) {
-    standardize_with(bencher, shape, per_pixel, specular, DistanceStep::Eq5);
+    apply(bencher, shape, per_pixel, Choice { specular, ..Choice::default() });
 }
 
-fn standardize_with(
-    bencher: Bencher,
-    shape: Shape,
-    per_pixel: bool,
-    specular: Option<SpecularStep>,
-    distance: DistanceStep,
-) {
-    let choice =
-        Choice { time: Some(TimeStep::Linear), distance: Some(distance), specular, ..Choice::default() };
+/// With linear time, and eq. 5 where no other distance step is chosen.
+fn apply(bencher: Bencher, shape: Shape, per_pixel: bool, choice: Choice) {
+    let distance = choice.distance.or(Some(DistanceStep::Eq5));
+    let choice = Choice { time: Some(TimeStep::Linear), distance, ..choice };
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
     let standardizer =
         Standardizer::plan(&choice, Some(&calibration()), channels).expect("the calibration holds the terms");
@@ -90,7 +85,8 @@ fn pointwise(bencher: Bencher, shape: Shape) {
 
 #[divan::bench(args = SHAPES)]
 fn pointwise_spline(bencher: Bencher, shape: Shape) {
-    standardize_with(bencher, shape, false, Some(SpecularStep::None), DistanceStep::Spline);
+    let (specular, distance) = (Some(SpecularStep::None), Some(DistanceStep::Spline));
+    apply(bencher, shape, false, Choice { specular, distance, ..Choice::default() });
 }
 
 #[divan::bench(args = SHAPES)]
@@ -101,4 +97,24 @@ fn pointwise_time_per_pixel(bencher: Bencher, shape: Shape) {
 #[divan::bench(args = SHAPES)]
 fn with_histogram(bencher: Bencher, shape: Shape) {
     standardize(bencher, shape, false, None);
+}
+
+fn denoised(bencher: Bencher, shape: Shape, rule: DenoiseRule) {
+    let denoise = Some(DenoiseStep::Smooth(rule));
+    apply(bencher, shape, false, Choice { denoise, specular: Some(SpecularStep::None), ..Choice::default() });
+}
+
+#[divan::bench(args = SHAPES)]
+fn denoised_by_median(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Median);
+}
+
+#[divan::bench(args = SHAPES)]
+fn denoised_by_wiener(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Wiener);
+}
+
+#[divan::bench(args = SHAPES, sample_count = 5)]
+fn denoised_by_plane(bencher: Bencher, shape: Shape) {
+    denoised(bencher, shape, DenoiseRule::Plane);
 }

@@ -3,7 +3,8 @@
 //!
 //! The method is that of Stürmer, Penne and Hornegger, "Standardization of Intensity-Values Acquired by
 //! Time-of-Flight-Cameras" (CVPR Workshops 2008): a lookup table over integration time, a polynomial over
-//! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`].
+//! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`]. [`denoise`] smooths the distance
+//! before it scales.
 //!
 //! [`calibrate`] fits a [`Calibration`] from sweeps; a [`Standardizer`] is planned once and applied to each
 //! [`Frame`]; [`evaluate`] tells how much better it is. This crate knows no files and starts no threads.
@@ -30,6 +31,7 @@
 
 pub mod calibrate;
 pub mod calibration;
+pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
 pub mod flags;
@@ -47,6 +49,7 @@ pub mod statistics;
 pub mod terms;
 
 pub use calibration::{Calibration, Reference};
+pub use denoise::DenoiseRule;
 pub use flags::PixelFlags;
 pub use frame::{Channels, Frame, IntegrationTime};
 pub use geometry::Intrinsics;

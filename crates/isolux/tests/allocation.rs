@@ -4,9 +4,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use isolux::specular::{PercentRule, SigmaRule};
-use isolux::standardize::SpecularStep;
+use isolux::standardize::{DenoiseStep, SpecularStep};
 use isolux::{
-    Channels, Choice, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized, Standardizer,
+    Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized,
+    Standardizer,
 };
 
 /// Counts the allocations of each thread.
@@ -66,5 +67,37 @@ fn nothing_is_allocated_per_frame() {
             standardizer.apply(frame, &mut out).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{specular:?}");
+    }
+}
+
+#[test]
+fn nothing_is_allocated_per_denoised_frame() {
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let shape = Shape::new(48, 64);
+    let mut frame = frame(shape, 900, false);
+    frame.distance_m =
+        Some(Plane::from_fn(shape, |row, column| 1.5 + ((row * 13 + column * 7) % 401) as f32 / 1000.0));
+    for rule in [DenoiseRule::Median, DenoiseRule::Wiener, DenoiseRule::Plane, DenoiseRule::Temporal] {
+        let choice = Choice { denoise: Some(DenoiseStep::Smooth(rule)), ..Choice::default() };
+        let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
+        let (mut history, mut out) = (standardizer.history(), Standardized::new(shape));
+        let mut smoothed = Plane::filled(shape, f32::NAN);
+        let mut before = 0;
+        for index in 0..20 {
+            // The history fills for eight frames.
+            if index == 8 {
+                before = ALLOCATIONS.get();
+            }
+            match &mut history {
+                Some(history) => {
+                    history.push(&frame, &mut smoothed).unwrap();
+                    standardizer.apply_at(&frame, &smoothed, &mut out).unwrap();
+                }
+                None => {
+                    standardizer.apply(&frame, &mut out).unwrap();
+                }
+            }
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{rule:?}");
     }
 }

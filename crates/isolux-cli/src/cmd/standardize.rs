@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::args::StandardizeArgs;
+use crate::chain::{self, Chain, Smoothed};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::{frames, interrupt, output};
@@ -21,8 +22,9 @@ const FLAGS: &str = "flags";
 
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
-/// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch.
-const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4;
+/// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch; up
+/// to four planes of the denoising rules.
+const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4;
 
 /// What to write besides the two channels, and how.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,8 +90,9 @@ pub(crate) fn standardize(
         .build()
         .map_err(|error| Failure::data(format!("cannot start threads: {error}")))?;
     // Reading and writing go frame by frame and in order; only the arithmetic between is shared out.
-    let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept));
-    let mut batch: Vec<Slot> = (0..slots).map(|_| Slot::new(&metadata, kept.len())).collect();
+    let mut chain = Chain::new(standardizer);
+    let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept, &chain));
+    let mut batch: Vec<Slot> = (0..slots).map(|_| Slot::new(&metadata, kept.len(), &chain)).collect();
     let mut summary = Summary::default();
     let progress = console::progress("standardizing", metadata.frame_count);
     for start in (0..metadata.frame_count).step_by(batch.len()) {
@@ -97,6 +100,9 @@ pub(crate) fn standardize(
         let count = batch.len().min(metadata.frame_count - start);
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
             recording.read_frame(start + offset, standardizer.needed(), &mut slot.frame)?;
+            chain
+                .take(&slot.frame, &mut slot.smoothed)
+                .map_err(|error| Failure::frame(&metadata.path, start + offset, error))?;
             // Now, not after the batch: a deflated channel that goes back a frame is decoded anew from its start.
             for (name, bytes) in kept.iter().zip(&mut slot.kept) {
                 recording.read_raw(name, start + offset, bytes)?;
@@ -125,16 +131,18 @@ pub(crate) fn standardize(
 }
 
 /// Frames that fit into [`BATCH_BYTES`], at least one.
-fn affordable_slots(metadata: &Metadata, kept: &[String]) -> usize {
+fn affordable_slots(metadata: &Metadata, kept: &[String], chain: &Chain<'_>) -> usize {
     let kept = kept.iter().filter_map(|name| metadata.channel(name));
     let kept_bytes: usize = kept.map(isolux_io::recording::ChannelInfo::frame_bytes).sum();
-    let slot_bytes = metadata.shape.pixels() * SLOT_BYTES_PER_PIXEL + kept_bytes;
-    (BATCH_BYTES / slot_bytes).max(1)
+    let (smoothed, history) = chain.bytes_per_pixel();
+    let slot_bytes = metadata.shape.pixels() * (SLOT_BYTES_PER_PIXEL + smoothed) + kept_bytes;
+    (BATCH_BYTES.saturating_sub(metadata.shape.pixels() * history) / slot_bytes).max(1)
 }
 
 /// A frame and its result; one for each thread, as far as memory allows.
 struct Slot {
     frame: Frame,
+    smoothed: Smoothed,
     out: Standardized,
     /// The frame of each kept channel, verbatim.
     kept: Vec<Vec<u8>>,
@@ -142,13 +150,13 @@ struct Slot {
 }
 
 impl Slot {
-    fn new(metadata: &Metadata, kept: usize) -> Self {
+    fn new(metadata: &Metadata, kept: usize, chain: &Chain<'_>) -> Self {
         let (frame, out) = (Frame::new(metadata.shape), Standardized::new(metadata.shape));
-        Self { frame, out, kept: vec![Vec::new(); kept], outcome: None }
+        Self { frame, smoothed: chain.smoothed(), out, kept: vec![Vec::new(); kept], outcome: None }
     }
 
     fn apply(&mut self, standardizer: &Standardizer) {
-        self.outcome = Some(standardizer.apply(&self.frame, &mut self.out));
+        self.outcome = Some(chain::apply(standardizer, &self.frame, &self.smoothed, &mut self.out));
     }
 
     fn take(&mut self, recording: &Path, index: usize) -> Outcome<FrameSummary> {

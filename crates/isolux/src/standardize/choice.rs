@@ -1,5 +1,6 @@
 //! What the user asks for: a method, and single steps that override it.
 
+use crate::denoise::DenoiseRule;
 use crate::specular::SpecularRule;
 
 /// Which terms to use where no single step says otherwise.
@@ -21,6 +22,16 @@ pub enum TimeStep {
     /// `t_ref / t`.
     Linear,
     /// Leave it in.
+    None,
+}
+
+/// The step that denoises the distance before it scales.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DenoiseStep {
+    /// By this rule.
+    Smooth(DenoiseRule),
+    /// Scale by the distance as it was delivered.
     None,
 }
 
@@ -56,6 +67,8 @@ pub struct Choice {
     pub method: Method,
     /// Integration time.
     pub time: Option<TimeStep>,
+    /// Noise of the distance; otherwise it is left in.
+    pub denoise: Option<DenoiseStep>,
     /// Distance.
     pub distance: Option<DistanceStep>,
     /// Highlights.

@@ -6,10 +6,11 @@ mod plan;
 mod report;
 mod time;
 
-pub use choice::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
 pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
+use crate::denoise::{DenoiseRule, Denoiser, TemporalMean};
 use crate::flags::PixelFlags;
 use crate::frame::{Channels, Frame};
 use crate::plane::{Plane, Shape, ShapeError};
@@ -34,6 +35,7 @@ pub struct Standardized {
     /// The frame's flags, with those of the correction.
     pub flags: Plane<PixelFlags>,
     quantiles: PositiveQuantiles,
+    denoiser: Denoiser,
 }
 
 /// What happened to one frame.
@@ -71,6 +73,12 @@ pub enum StandardizeError {
     /// The distance that the plan needs is not there.
     #[error("distance found missing, a plane of metres expected: the distance step needs it")]
     DistanceMissing,
+    /// The plan smooths over frames, and only one was given.
+    #[error(
+        "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \
+         feed every frame to the planned `history` and use `apply_at`"
+    )]
+    HistoryMissing,
 }
 
 impl Standardized {
@@ -81,6 +89,7 @@ impl Standardized {
             amplitude: Plane::filled(shape, f32::NAN),
             flags: Plane::filled(shape, PixelFlags::empty()),
             quantiles: PositiveQuantiles::new(),
+            denoiser: Denoiser::default(),
         }
     }
 
@@ -133,11 +142,45 @@ impl Standardizer {
     /// # Errors
     /// [`StandardizeError`] when the frame lacks what the plan needs, or its planes differ in shape.
     pub fn apply(&self, frame: &Frame, out: &mut Standardized) -> Result<FrameSummary, StandardizeError> {
+        if self.plan.denoise == Some(DenoiseRule::Temporal) {
+            return Err(StandardizeError::HistoryMissing);
+        }
+        self.correct(frame, None, out)
+    }
+
+    /// The history that the plan needs, where it denoises over frames: [`TemporalMean::push`] every frame in order,
+    /// and [`Self::apply_at`] with what it writes.
+    #[must_use]
+    pub fn history(&self) -> Option<TemporalMean> {
+        (self.plan.denoise == Some(DenoiseRule::Temporal)).then(TemporalMean::new)
+    }
+
+    /// Like [`Self::apply`], but scales by `distance_m` (metres) in place of the frame's own distance, and denoises
+    /// nothing more.
+    ///
+    /// # Errors
+    /// [`StandardizeError`] when the frame lacks what the plan needs, or the planes differ in shape.
+    pub fn apply_at(
+        &self,
+        frame: &Frame,
+        distance_m: &Plane<f32>,
+        out: &mut Standardized,
+    ) -> Result<FrameSummary, StandardizeError> {
+        distance_m.expect_shape("distance", frame.shape())?;
+        self.correct(frame, Some(distance_m), out)
+    }
+
+    fn correct(
+        &self,
+        frame: &Frame,
+        distance_m: Option<&Plane<f32>>,
+        out: &mut Standardized,
+    ) -> Result<FrameSummary, StandardizeError> {
         frame.check_shapes()?;
         out.reshape(frame.shape());
         out.flags.values_mut().copy_from_slice(frame.flags.values());
         let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
-        self.scale(frame, time.gain, out)?;
+        self.scale(frame, distance_m, time.gain, out)?;
         let specular_cutoff =
             self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.quantiles));
         if let Some(cutoff) = specular_cutoff {
@@ -152,14 +195,24 @@ impl Standardizer {
     }
 
     /// Runs the point-wise loop block by block. A step that is left out reads a block of ones from the cache.
-    fn scale(&self, frame: &Frame, gain: TimeGain, out: &mut Standardized) -> Result<(), StandardizeError> {
+    fn scale(
+        &self,
+        frame: &Frame,
+        distance_m: Option<&Plane<f32>>,
+        gain: TimeGain,
+        out: &mut Standardized,
+    ) -> Result<(), StandardizeError> {
         const ONES: [f32; BLOCK] = [1.0; BLOCK];
         let law = self.plan.distance.unwrap_or(DistanceGain::ONE);
-        let distances = match (&self.plan.distance, &frame.distance_m) {
-            (None, _) => None,
-            (Some(_), Some(distances)) => Some(distances.values()),
-            (Some(_), None) => return Err(StandardizeError::DistanceMissing),
-        };
+        let distances =
+            match (&self.plan.distance, distance_m.or(frame.distance_m.as_ref()), self.plan.denoise) {
+                (None, ..) => None,
+                (Some(_), None, _) => return Err(StandardizeError::DistanceMissing),
+                (Some(_), Some(delivered), Some(rule)) if distance_m.is_none() => {
+                    Some(out.denoiser.denoise(rule, frame, delivered))
+                }
+                (Some(_), Some(distances), _) => Some(distances.values()),
+            };
         let mut gains = [1.0; BLOCK];
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);

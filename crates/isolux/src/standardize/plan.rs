@@ -1,8 +1,9 @@
 //! From the user's choice, the calibration and the channels at hand to the steps that will be applied.
 
-use super::choice::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+use super::choice::{Choice, DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
 use super::report::{AppliedStep, Note, PlanError};
 use crate::calibration::{Calibration, REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
+use crate::denoise::DenoiseRule;
 use crate::frame::Channels;
 use crate::specular::{HistogramRule, SpecularRule};
 use crate::terms::{DistanceGain, DistanceTable, Lut, Spline, eq5, square};
@@ -19,6 +20,8 @@ pub(super) enum TimePlan {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Plan {
     pub(super) time: TimePlan,
+    /// `None` scales by the distance as delivered.
+    pub(super) denoise: Option<DenoiseRule>,
     /// `None` leaves the distance in.
     pub(super) distance: Option<DistanceGain>,
     /// A factor on that law, for laws that are no polynomial.
@@ -49,10 +52,12 @@ impl Plan {
         if calibration.is_none() && !textbook.is_empty() {
             planner.notes.insert(0, Note::Textbook { terms: textbook.join(", ") });
         }
+        let denoise = planner.denoise(distance.is_some());
         let specular = planner.specular();
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
         Ok(Self {
             time,
+            denoise,
             distance,
             distance_table: distance_table.flatten(),
             specular,
@@ -139,6 +144,18 @@ impl Planner<'_> {
         };
         self.step("distance", term, parameters);
         Ok(Some((gain, table)))
+    }
+
+    /// Its step goes before that of the distance, which is planned already.
+    fn denoise(&mut self, distance_scales: bool) -> Option<DenoiseRule> {
+        let Some(DenoiseStep::Smooth(rule)) = self.choice.denoise else { return None };
+        if !distance_scales {
+            self.notes.push(Note::NothingToDenoise);
+            return None;
+        }
+        let step = AppliedStep { effect: "denoise", term: rule.name(), parameters: rule.parameters() };
+        self.steps.insert(self.steps.len() - 1, step);
+        Some(rule)
     }
 
     fn specular(&mut self) -> Option<SpecularRule> {
@@ -262,6 +279,17 @@ mod tests {
             let error = Plan::new(&choice, Some(&empty), BOTH).unwrap_err();
             assert!(matches!(error, PlanError::TermMissing { term: "lut", .. }));
         }
+    }
+
+    #[test]
+    fn denoising_goes_before_the_distance_and_only_with_it() {
+        let denoise = Some(DenoiseStep::Smooth(DenoiseRule::Wiener));
+        let plan = Plan::new(&Choice { denoise, ..Choice::default() }, None, BOTH).unwrap();
+        assert_eq!(terms(&plan), ["linear", "wiener", "square", "histogram"]);
+        let without = Choice { denoise, distance: Some(DistanceStep::None), ..Choice::default() };
+        let plan = Plan::new(&without, None, BOTH).unwrap();
+        assert_eq!((terms(&plan), plan.denoise), (vec!["linear", "histogram"], None));
+        assert_eq!(plan.notes.last(), Some(&Note::NothingToDenoise));
     }
 
     #[test]

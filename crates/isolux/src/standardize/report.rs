@@ -5,7 +5,7 @@ use std::fmt;
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppliedStep {
-    /// Which effect it takes out: `time`, `distance` or `specular`.
+    /// Which effect it takes out: `time`, `denoise`, `distance` or `specular`.
     pub effect: &'static str,
     /// Name of the term.
     pub term: &'static str,
@@ -36,6 +36,8 @@ pub enum Note {
         /// The channel.
         channel: &'static str,
     },
+    /// The distance is to be denoised, but no step scales by it.
+    NothingToDenoise,
 }
 
 impl fmt::Display for Note {
@@ -52,6 +54,9 @@ impl fmt::Display for Note {
             Self::ChannelMissing { effect, channel } => {
                 write!(f, "the recording has no {channel}: the {effect} step is left out")
             }
+            Self::NothingToDenoise => f.write_str(
+                "no step scales by the distance: there is nothing to denoise, and this step is left out",
+            ),
         }
     }
 }

@@ -1,0 +1,96 @@
+//! A planned chain going through a recording's frames in order, with the history that it may need.
+
+use isolux::denoise::TemporalMean;
+use isolux::standardize::{FrameSummary, StandardizeError};
+use isolux::{Channels, Frame, Plane, Shape, Standardized, Standardizer};
+use isolux_io::Recording;
+
+use crate::failure::Outcome;
+
+/// The distances that a frame is to be scaled by, where they depend on the frames before it; empty otherwise.
+#[derive(Clone, Debug)]
+pub(crate) struct Smoothed(Option<Plane<f32>>);
+
+/// What happens to the frames in order. A frame's result depends on it and the few before it alone.
+#[derive(Debug)]
+pub(crate) struct Chain<'a> {
+    standardizer: &'a Standardizer,
+    history: Option<TemporalMean>,
+}
+
+impl<'a> Chain<'a> {
+    pub(crate) fn new(standardizer: &'a Standardizer) -> Self {
+        Self { standardizer, history: standardizer.history() }
+    }
+
+    /// Memory for one frame at work.
+    pub(crate) fn smoothed(&self) -> Smoothed {
+        Smoothed(self.history.as_ref().map(|_| Plane::filled(Shape::new(0, 0), f32::NAN)))
+    }
+
+    /// Bytes per pixel of [`Self::smoothed`] and of the history.
+    pub(crate) fn bytes_per_pixel(&self) -> (usize, usize) {
+        self.history.as_ref().map_or((0, 0), |_| (4, 8 * TemporalMean::FRAMES))
+    }
+
+    /// Takes the next frame in order; afterwards [`apply`] may work on it in any order and thread.
+    pub(crate) fn take(&mut self, frame: &Frame, out: &mut Smoothed) -> Result<(), StandardizeError> {
+        match (&mut self.history, &mut out.0) {
+            (Some(history), Some(out)) => history.push(frame, out),
+            _ => Ok(()),
+        }
+    }
+
+    /// Both at once.
+    pub(crate) fn standardize(
+        &mut self,
+        frame: &Frame,
+        smoothed: &mut Smoothed,
+        out: &mut Standardized,
+    ) -> Result<FrameSummary, StandardizeError> {
+        self.take(frame, smoothed)?;
+        apply(self.standardizer, frame, smoothed, out)
+    }
+
+    /// Reads frame `index` out of its turn, with those before it that it depends on.
+    pub(crate) fn read_alone(
+        &mut self,
+        recording: &mut dyn Recording,
+        index: usize,
+        wanted: Channels,
+        frame: &mut Frame,
+    ) -> Outcome {
+        if let Some(history) = &mut self.history {
+            history.reset();
+            let mut unused = Plane::filled(Shape::new(0, 0), f32::NAN);
+            for earlier in (index + 1).saturating_sub(TemporalMean::FRAMES)..index {
+                recording.read_frame(earlier, wanted | self.standardizer.needed(), frame)?;
+                let path = recording.metadata().path.clone();
+                history
+                    .push(frame, &mut unused)
+                    .map_err(|error| crate::failure::Failure::frame(&path, earlier, error))?;
+            }
+        }
+        Ok(recording.read_frame(index, wanted, frame)?)
+    }
+
+    /// Begins another pass.
+    pub(crate) fn restart(&mut self) {
+        if let Some(history) = &mut self.history {
+            history.reset();
+        }
+    }
+}
+
+/// Standardizes a frame that the chain has taken.
+pub(crate) fn apply(
+    standardizer: &Standardizer,
+    frame: &Frame,
+    smoothed: &Smoothed,
+    out: &mut Standardized,
+) -> Result<FrameSummary, StandardizeError> {
+    match &smoothed.0 {
+        Some(distance_m) => standardizer.apply_at(frame, distance_m, out),
+        None => standardizer.apply(frame, out),
+    }
+}

@@ -1,0 +1,161 @@
+//! `plane`: in the 7×7 pixels around each, a plane is fitted to those that lie on the same surface.
+//!
+//! Which do, the [`super::wiener`] image says: where it departs from the plane by more than its own noise allows, a
+//! pixel counts less, and not at all beyond three standard deviations (Tukey's biweight). A first plane starts level
+//! and is fitted to that image; the second is fitted to the measured distances that lie on the first, weighted by
+//! `1/σ_d²`, and gives the answer. Measured distances do not choose their own company: that would let the noise
+//! decide. A plane, unlike a mean, bends no slanted surface, and uneven weights do not tilt it: the texture of the
+//! amplitude stays out.
+
+use super::Image;
+use super::wiener::Wiener;
+
+/// Pixels to either side.
+pub(super) const RADIUS: usize = 3;
+/// Beyond this many standard deviations a pixel belongs to another surface.
+const CUTOFF: f64 = 3.0;
+/// Variance that the guide keeps of one pixel's where nothing is detail: (85/625)² = 0.018 would be left by two
+/// boxes of 5×5 one after the other, but the noise passes for detail here and there. Measured on flat areas.
+const SMOOTHED_VARIANCE: f64 = 0.06;
+/// Pixels in less than two dimensions determine no plane: least ratio of the determinant of their spread to the
+/// square of half its trace.
+const LEAST_SPREAD: f64 = 1e-3;
+
+/// Working memory: the image that decides which pixels lie on one surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Guide {
+    distance_m: Vec<f32>,
+    /// Share of the detail, 0..1, that the guide left in, noise included.
+    detail: Vec<f32>,
+}
+
+/// `d = middle + along_x x + along_y y`, in pixels from the middle one.
+#[derive(Clone, Copy, Debug)]
+struct Surface {
+    middle: f64,
+    along_x: f64,
+    along_y: f64,
+}
+
+impl Guide {
+    /// Writes the denoised distances, NaN where the pixel takes no part.
+    pub(super) fn denoise(&mut self, image: Image<'_>, k: f64, wiener: &mut Wiener, out: &mut [f32]) {
+        if k <= 0.0 {
+            out.copy_from_slice(image.distance_m);
+            return;
+        }
+        self.distance_m.resize(out.len(), 0.0);
+        self.detail.resize(out.len(), 0.0);
+        wiener.denoise(image, k, &mut self.distance_m, Some(&mut self.detail));
+        for (index, out) in out.iter_mut().enumerate() {
+            let known = !image.distance_m[index].is_nan();
+            *out = if known { self.pixel(image, k, index) } else { f32::NAN };
+        }
+    }
+
+    fn pixel(&self, image: Image<'_>, k: f64, index: usize) -> f32 {
+        let (y, x) = (index / image.shape.width, index % image.shape.width);
+        let level = Surface { middle: f64::from(self.distance_m[index]), along_x: 0.0, along_y: 0.0 };
+        let roughly = self.fit(image, k, (y, x), level, &self.distance_m);
+        let surface = self.fit(image, k, (y, x), roughly, image.distance_m);
+        surface.middle as f32
+    }
+
+    /// Weighted least squares of `values_m` around `known`.
+    fn fit(
+        &self,
+        image: Image<'_>,
+        k: f64,
+        (y, x): (usize, usize),
+        known: Surface,
+        values_m: &[f32],
+    ) -> Surface {
+        let (height, width) = (image.shape.height, image.shape.width);
+        let mut sums = Sums::default();
+        for row in y.saturating_sub(RADIUS)..(y + RADIUS + 1).min(height) {
+            let dy = row as f64 - y as f64;
+            for column in x.saturating_sub(RADIUS)..(x + RADIUS + 1).min(width) {
+                let dx = column as f64 - x as f64;
+                let index = row * width + column;
+                let plane = known.middle + known.along_x * dx + known.along_y * dy;
+                let weight = self.weight(image, k, index, plane);
+                if weight > 0.0 {
+                    let value = f64::from(values_m[index]);
+                    sums.add(weight, dx, dy, value - plane);
+                    sums.widen(value);
+                }
+            }
+        }
+        sums.surface(known)
+    }
+
+    /// `a²`, reduced by the biweight of the guide's distance from the plane; 0 where the pixel takes no part.
+    fn weight(&self, image: Image<'_>, k: f64, index: usize, plane: f64) -> f64 {
+        if image.distance_m[index].is_nan() {
+            return 0.0;
+        }
+        let amplitude = f64::from(image.amplitude[index]);
+        let trust = amplitude * amplitude;
+        let departure = f64::from(self.distance_m[index]) - plane;
+        let detail = f64::from(self.detail[index]);
+        let variance = (SMOOTHED_VARIANCE + (1.0 - SMOOTHED_VARIANCE) * detail * detail) * k / trust;
+        let ratio = departure * departure / (CUTOFF * CUTOFF * variance);
+        if ratio < 1.0 { trust * (1.0 - ratio) * (1.0 - ratio) } else { 0.0 }
+    }
+}
+
+/// Weighted moments of the places and of the residuals from the known plane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    w: f64,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+    r: f64,
+    xr: f64,
+    yr: f64,
+    /// Least and greatest value.
+    range: Option<(f64, f64)>,
+}
+
+impl Sums {
+    fn add(&mut self, w: f64, x: f64, y: f64, r: f64) {
+        self.w += w;
+        self.x += w * x;
+        self.y += w * y;
+        self.xx += w * x * x;
+        self.xy += w * x * y;
+        self.yy += w * y * y;
+        self.r += w * r;
+        self.xr += w * x * r;
+        self.yr += w * y * r;
+    }
+
+    fn widen(&mut self, value: f64) {
+        let (low, high) = self.range.unwrap_or((value, value));
+        self.range = Some((low.min(value), high.max(value)));
+    }
+
+    /// The known plane corrected by that of the residuals; by their mean alone where the pixels determine no plane.
+    /// In the middle it stays within the values that it is fitted to: nothing is extrapolated.
+    fn surface(&self, known: Surface) -> Surface {
+        let Some((low, high)) = self.range else { return known };
+        let [x, y, r] = [self.x, self.y, self.r].map(|sum| sum / self.w);
+        let [xx, xy, yy] = [self.xx / self.w - x * x, self.xy / self.w - x * y, self.yy / self.w - y * y];
+        let [xr, yr] = [self.xr / self.w - x * r, self.yr / self.w - y * r];
+        let determinant = xx * yy - xy * xy;
+        let half_trace = 0.5 * (xx + yy);
+        if determinant <= LEAST_SPREAD * half_trace * half_trace {
+            return Surface { middle: (known.middle + r).clamp(low, high), ..known };
+        }
+        let along_x = (xr * yy - yr * xy) / determinant;
+        let along_y = (yr * xx - xr * xy) / determinant;
+        Surface {
+            middle: (known.middle + r - along_x * x - along_y * y).clamp(low, high),
+            along_x: known.along_x + along_x,
+            along_y: known.along_y + along_y,
+        }
+    }
+}
