@@ -9,7 +9,9 @@ mod evaluation_page;
 mod failure;
 mod frames;
 mod interrupt;
+mod option_values;
 mod output;
+mod step_args;
 
 use std::io::Write;
 use std::process::ExitCode;

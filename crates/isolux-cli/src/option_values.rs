@@ -1,0 +1,13 @@
+//! Numbers that options take.
+
+/// A positive finite number.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a positive number expected".to_owned()) }
+}
+
+/// A number above 0 and up to 1.
+pub(crate) fn fraction(text: &str) -> Result<f64, String> {
+    let value = positive(text)?;
+    if value <= 1.0 { Ok(value) } else { Err("a fraction above 0 and up to 1 expected".to_owned()) }
+}
