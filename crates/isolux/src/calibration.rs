@@ -114,7 +114,8 @@ impl Calibration {
         }
     }
 
-    /// Refuses values that no fit can have written, so that whatever follows may rely on them.
+    /// Refuses impossible values (formats, signs, ranges, lengths), so that whatever follows may rely on them. That
+    /// table and cubic are 1 at the reference is their fit's promise and is not checked again.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
