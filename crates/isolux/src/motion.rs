@@ -14,8 +14,6 @@ const STANDARD_ERRORS: f64 = 5.0;
 const LINEAR_SHARE: f64 = 0.7;
 /// Frames that are compared at most: a recording whose time changes with every frame would fill the memory.
 const MOST_FRAMES: usize = 4096;
-/// Blocks whose distances scatter by more than this share are not compared: noise that wraps around shifts the mean.
-const DISTANCE_NOISE_SHARE: f64 = 0.1;
 /// The scene moved when more than this share of the comparable blocks did.
 const MOVED_SHARE: f64 = 0.1;
 
@@ -63,7 +61,7 @@ impl MotionWatch {
                 indices.iter().map(|&i| f64::from(frame.amplitude.values()[i])).sum::<f64>() / count;
             let distance = indices.iter().map(|&i| f64::from(distance_m.values()[i])).sum::<f64>() / count;
             let noise = noise::spatial(rows.chunks(window.width)).unwrap_or(f64::NAN);
-            let reliable = noise <= DISTANCE_NOISE_SHARE * distance;
+            let reliable = noise <= noise::DISTANCE_NOISE_SHARE * distance;
             Block {
                 amplitude_per_us: amplitude / time_us,
                 distance_m: if reliable { distance } else { f64::NAN },

@@ -8,6 +8,10 @@ const TRIMMED_VARIANCE: f64 = 0.758_8;
 /// Fewer differences than this make no estimate.
 const LEAST_DIFFERENCES: usize = 16;
 
+/// Distances that scatter by more than this share of themselves are not to be trusted: noise that strong wraps around
+/// the ambiguity range and shifts means, and an over-saturated or dark window has no distance at all.
+pub(crate) const DISTANCE_NOISE_SHARE: f64 = 0.1;
+
 /// Standard deviation of normal `differences` from the smaller 95 % of them; `None` when they are too few.
 /// Unlike the median deviation, it does not collapse to 0 or to one step on coarsely quantized images.
 pub(crate) fn trimmed_deviation(differences: &mut [f64]) -> Option<f64> {

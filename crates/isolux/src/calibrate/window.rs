@@ -6,9 +6,6 @@ use crate::plane::Window;
 
 /// Frames with more invalid pixels in the window than this share are left out.
 const INVALID_SHARE: f64 = 0.05;
-/// Frames whose distances scatter by more than this share are left out: what is that noisy, because the window
-/// is over-saturated or dark, has no distance to be plotted against.
-const DISTANCE_NOISE_SHARE: f64 = 0.1;
 /// A spread is a tilt beyond this many standard errors.
 const STANDARD_ERRORS: f64 = 8.0;
 
@@ -38,7 +35,7 @@ impl Measurement {
     }
 
     pub(super) fn is_reliable(&self) -> bool {
-        self.distance_sd_m <= DISTANCE_NOISE_SHARE * self.distance_m
+        self.distance_sd_m <= noise::DISTANCE_NOISE_SHARE * self.distance_m
     }
 }
 

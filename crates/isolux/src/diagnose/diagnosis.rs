@@ -10,7 +10,7 @@ use super::rules;
 use super::sample::Observed;
 use super::scaling::{Pair, Scaling};
 use super::still::StillPixels;
-use super::untold::{self, Outcome, Untold};
+use super::untold::{Outcome, Untold};
 use super::values::{Values, pile_up_value};
 
 /// The diagnosis of a recording: what is in its amplitude, what is gone, and what cannot be told.
@@ -21,22 +21,22 @@ pub struct Diagnosis {
     /// What follows, most important first. Empty when nothing can be told.
     pub findings: Vec<Finding>,
     /// Integration time.
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub time: Outcome<Effect>,
     /// Distance.
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub distance: Outcome<Effect>,
     /// Place in the image: the coefficient of r².
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub radius: Outcome<Effect>,
     /// The vendor amplitude against the amplitude.
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub vendor_scaling: Outcome<Scaling>,
     /// The amplitude against eq. 1 of the phase samples.
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub phase_samples: Outcome<Scaling>,
     /// The same pixels at several times.
-    #[serde(serialize_with = "untold::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub still_pixels: Outcome<StillPixels>,
     /// Pixels of one material.
     pub material: Material,

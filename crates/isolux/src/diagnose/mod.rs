@@ -72,7 +72,7 @@ pub use values::{PileUp, Values};
 pub use vendor::VendorFinding;
 
 use panel::{Look, Panel};
-use sample::{Observed, Sample, hash};
+use sample::{Observed, Sample};
 use values::ValueMeter;
 
 /// Integration times less than this factor apart count as one: cameras report them with jitter.

@@ -2,7 +2,8 @@
 
 use super::still::{Point, StillPixels};
 use super::untold::{Outcome, Untold};
-use super::{MINIMUM_ROWS, SAME_TIME_RATIO, hash};
+use super::{MINIMUM_ROWS, SAME_TIME_RATIO};
+use crate::hash::splitmix64;
 use crate::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
 /// Pixels that are followed.
@@ -62,7 +63,7 @@ impl Panel {
     pub(super) fn new(pixels: usize, block: impl Fn(usize) -> u16) -> Self {
         let mut order: Vec<usize> = (0..pixels).collect();
         if pixels > PIXELS {
-            order.select_nth_unstable_by_key(PIXELS, |&index| hash(index as u64));
+            order.select_nth_unstable_by_key(PIXELS, |&index| splitmix64(index as u64));
             order.truncate(PIXELS);
         }
         let mut pixels: Vec<(u32, u16)> =

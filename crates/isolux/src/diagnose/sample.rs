@@ -2,6 +2,8 @@
 
 use std::collections::BinaryHeap;
 
+use crate::hash::splitmix64;
+
 /// Most pixels that are kept: 60 bytes each.
 const CAPACITY: usize = 1 << 16;
 
@@ -59,12 +61,12 @@ pub(super) struct Sample {
 impl Sample {
     /// True when the pixel `index` of this frame would be kept.
     pub(super) fn admits(&self, index: usize) -> bool {
-        let rank = hash(self.frame_start + index as u64);
+        let rank = splitmix64(self.frame_start + index as u64);
         self.kept.len() < CAPACITY || self.kept.peek().is_some_and(|last| rank < last.rank)
     }
 
     pub(super) fn keep(&mut self, index: usize, observed: Observed) {
-        self.kept.push(Ranked { rank: hash(self.frame_start + index as u64), observed });
+        self.kept.push(Ranked { rank: splitmix64(self.frame_start + index as u64), observed });
         if self.kept.len() > CAPACITY {
             self.kept.pop();
         }
@@ -80,12 +82,4 @@ impl Sample {
         kept.sort_unstable();
         kept.into_iter().map(|ranked| ranked.observed).collect()
     }
-}
-
-/// SplitMix64's output function (Steele, Lea and Flood 2014) of a counter: a bijection, so ranks are unique.
-pub(super) fn hash(number: u64) -> u64 {
-    let mut bits = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
 }

@@ -1,6 +1,6 @@
 //! What a recording does not tell, and why.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::regression::RegressionError;
 
@@ -121,22 +121,5 @@ impl From<RegressionError> for Untold {
             }
             RegressionError::TooFewClusters { found, .. } => Self::TooFewBlocks { blocks: found },
         }
-    }
-}
-
-/// Serializes the figure as itself, and the reason with its text.
-pub(super) fn serialize<T: Serialize, S: Serializer>(
-    outcome: &Outcome<T>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Refusal<'a> {
-        #[serde(flatten)]
-        reason: &'a Untold,
-        because: String,
-    }
-    match outcome {
-        Ok(value) => value.serialize(serializer),
-        Err(reason) => Refusal { reason, because: reason.to_string() }.serialize(serializer),
     }
 }

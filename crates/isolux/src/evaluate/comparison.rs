@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Evaluation, Evaluator, Outcome, SnrStratum, Unavailable, outcome};
+use super::{Evaluation, Evaluator, Outcome, SnrStratum, Unavailable};
 
 /// The raw and the standardized amplitude of the same frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -12,7 +12,7 @@ pub struct Comparison {
     /// Figures of the standardized amplitude.
     pub after: Evaluation,
     /// Relative noise after / before, dimensionless: 1 where the steps add no noise.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub noise_amplification: Outcome<f64>,
 }
 
@@ -38,10 +38,10 @@ pub struct ComparisonRow {
     /// Where it should go.
     pub better: Better,
     /// Before standardization.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub before: Outcome<f64>,
     /// After it.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub after: Outcome<f64>,
     /// Share of values behind the figure before, 0..=1.
     pub before_valid_fraction: Option<f64>,

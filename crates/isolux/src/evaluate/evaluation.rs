@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::{
     DistanceSlope, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv, SnrStratum, ThresholdIou,
-    outcome,
 };
 
 /// What an [`Evaluator`](super::Evaluator) found; each figure, or why the recording does not determine it.
@@ -19,27 +18,27 @@ pub struct Evaluation {
     /// Integration time of the reference frame, µs.
     pub reference_time_us: Option<f64>,
     /// Per-pixel coefficient of variation over integration times.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub pixel_cv: Outcome<PixelCv>,
     /// The same, by the raw amplitude's signal-to-noise ratio.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub pixel_cv_by_snr: Outcome<Vec<SnrStratum>>,
     /// Coefficient of variation of the image's mean over integration times.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub image_cv: Outcome<ImageCv>,
     /// Slope of ln A on ln d.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub distance_slope: Outcome<DistanceSlope>,
     /// Overlap of the masks of one threshold over integration times.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub threshold_iou: Outcome<ThresholdIou>,
     /// Movement of Otsu's threshold over integration times.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub otsu_shift: Outcome<OtsuShift>,
     /// W1 distance of log histograms over integration times.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub histogram_distance: Outcome<HistogramDistance>,
     /// Relative noise of a single frame.
-    #[serde(serialize_with = "outcome::serialize")]
+    #[serde(serialize_with = "crate::refusal::serialize")]
     pub noise: Outcome<Noise>,
 }

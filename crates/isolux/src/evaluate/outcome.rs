@@ -1,6 +1,6 @@
 //! A metric's value, or why there is none.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// A metric, or the reason why this recording does not determine it. In JSON the value itself, or
 /// `{"unavailable": "time_constant", "because": "…"}`.
@@ -77,23 +77,6 @@ pub enum Unavailable {
     NoiseMethodsDiffer,
 }
 
-/// Serializes the value as itself, and the reason with its text.
-pub(super) fn serialize<T: Serialize, S: Serializer>(
-    outcome: &Outcome<T>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Refusal<'a> {
-        #[serde(flatten)]
-        reason: &'a Unavailable,
-        because: String,
-    }
-    match outcome {
-        Ok(value) => value.serialize(serializer),
-        Err(reason) => Refusal { reason, because: reason.to_string() }.serialize(serializer),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,7 +85,7 @@ mod tests {
     fn a_reason_is_readable_by_program_and_by_person() {
         #[derive(Serialize)]
         struct Holder {
-            #[serde(serialize_with = "serialize")]
+            #[serde(serialize_with = "crate::refusal::serialize")]
             slope: Outcome<f64>,
         }
         let reason = Unavailable::DistanceSpanTooSmall { found: 1.05, minimum: 1.2 };

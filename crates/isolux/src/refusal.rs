@@ -1,0 +1,22 @@
+//! Figures that are there, or a reason why not, as JSON.
+
+use std::fmt::Display;
+
+use serde::{Serialize, Serializer};
+
+/// Serializes the figure as itself, and the reason with its text in the field `because`.
+pub(crate) fn serialize<T: Serialize, E: Serialize + Display, S: Serializer>(
+    figure: &Result<T, E>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Refusal<'a, E> {
+        #[serde(flatten)]
+        reason: &'a E,
+        because: String,
+    }
+    match figure {
+        Ok(value) => value.serialize(serializer),
+        Err(reason) => Refusal { reason, because: reason.to_string() }.serialize(serializer),
+    }
+}
