@@ -5,6 +5,7 @@
 //! [`Lab`] holds what the experiments share: the simulated sweeps and the calibration fitted on them. Each file of
 //! [`figures`] makes one section of the [`page`](fn@page).
 
+pub mod beyond;
 mod error;
 pub mod figures;
 mod lab;

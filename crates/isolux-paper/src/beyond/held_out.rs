@@ -1,0 +1,79 @@
+//! Cameras that no preset is like, calibrated from sweeps as a user would record them. What is measured on them
+//! afterwards are other frames than those of the fit.
+
+use isolux::calibrate::{self, CalibrateSettings, DistanceSweep, ExposureSweep};
+use isolux::{Calibration, Frame};
+use isolux_camera::scene::run::RegisterRange;
+use isolux_camera::{CameraModel, Scene, Simulation};
+
+use crate::error::PaperError;
+use crate::measure::for_each;
+
+/// Seeds of the cameras, which no constant of the library was chosen on.
+pub const CAMERAS: [u64; 3] = [101, 102, 103];
+/// Seed of the noise of the frames that are fitted on.
+const FITTED: u64 = 1;
+/// Seed of the noise of the frames that are measured on.
+pub(super) const MEASURED: u64 = 2;
+
+/// A camera and its calibration.
+#[derive(Clone, Debug)]
+pub struct HeldOut {
+    /// The camera.
+    pub model: CameraModel,
+    /// Fitted on a wall over its register and a board over distances.
+    pub calibration: Calibration,
+}
+
+impl HeldOut {
+    /// Simulates the sweeps of camera `seed` and fits all that they determine.
+    ///
+    /// # Errors
+    /// [`PaperError`], which no seed should bring about.
+    pub fn new(seed: u64) -> Result<Self, PaperError> {
+        let model = CameraModel::random(seed);
+        let settings = CalibrateSettings {
+            modulation_frequency_hz: Some(model.modulation_frequency_hz),
+            ..CalibrateSettings::default()
+        };
+        let mut wall = ExposureSweep::new("wall-sweep", &settings);
+        for_each(&Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?, |_, simulated| {
+            Ok(wall.push(&simulated.frame)?)
+        })?;
+        let mut board = DistanceSweep::new("board-distances", &settings);
+        let scene = Scene::builtin("board-distances")?;
+        for_each(&Simulation::new(cropped(&model), scene, FITTED)?, |_, simulated| {
+            Ok(board.push(&simulated.frame)?)
+        })?;
+        let name = Some(model.name.clone());
+        let (calibration, _) = calibrate::fit(&settings, name, vec![wall.finish()], vec![board.finish()])?;
+        Ok(Self { model, calibration })
+    }
+}
+
+/// The wall at about fifty times of the camera's register.
+fn wall_scene(model: &CameraModel) -> Result<Scene, PaperError> {
+    let mut scene = Scene::builtin("wall-sweep")?;
+    let last = model.integration_register.maximum;
+    for run in &mut scene.runs {
+        run.registers = Some(RegisterRange { first: 0, last, step: (last / 50).max(1) });
+    }
+    Ok(scene)
+}
+
+/// The camera's image around the principal point alone: all that a board in the centre needs.
+pub(super) fn cropped(model: &CameraModel) -> CameraModel {
+    const SIDE: usize = 40;
+    let mut model = CameraModel { height: SIDE, width: SIDE, ..model.clone() };
+    let centre = (SIDE - 1) as f64 / 2.0;
+    (model.intrinsics.cx, model.intrinsics.cy) = (centre, centre);
+    model
+}
+
+/// The time of a frame, µs; NaN where it has no single one.
+pub(super) fn time_us(frame: &Frame) -> f64 {
+    match frame.integration_time_us {
+        isolux::IntegrationTime::PerFrame(time_us) => time_us,
+        _ => f64::NAN,
+    }
+}

@@ -1,0 +1,8 @@
+//! Beyond the paper: what the terms that it does not have are worth, measured on cameras and frames that nothing was
+//! fitted or tuned on.
+
+pub mod chains;
+pub mod decay;
+pub mod figure;
+pub mod held_out;
+pub mod still;

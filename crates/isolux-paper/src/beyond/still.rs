@@ -1,0 +1,112 @@
+//! A still scene over integration times that does not saturate: how near a chain comes to what the camera's noise
+//! allows.
+
+use isolux::evaluate::{EvaluationFrame, EvaluationSettings, Evaluator};
+use isolux::statistics::quantile;
+use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
+use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
+
+use super::chains::Chain;
+use super::held_out::{HeldOut, MEASURED, time_us};
+use crate::error::PaperError;
+use crate::measure::for_each;
+
+/// Integration times at which no random camera saturates on the desk, µs.
+const TIMES_US: [f64; 6] = [1000.0, 2000.0, 4000.0, 8000.0, 12_000.0, 16_000.0];
+
+/// What a chain leaves of a still scene over the integration times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Still {
+    /// Median over the pixels of the coefficient of variation over integration times.
+    pub median_cv: f64,
+    /// The same, 95 % quantile.
+    pub p95_cv: f64,
+    /// Share of the pixels that the chain gives a value, of those that the camera measured.
+    pub valid: f64,
+}
+
+/// A held-out camera before the desk.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StillScene {
+    /// The same frames with the true factors: the noise floor.
+    pub floor: Still,
+    /// Every chain, in their order.
+    pub chains: Vec<Still>,
+    /// 5 % quantile of the share of its linear amplitude that a pixel keeps at the longest time.
+    pub kept: f64,
+}
+
+/// Measures every chain on the same pixels.
+///
+/// # Errors
+/// [`PaperError`], which no seed should bring about.
+pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, PaperError> {
+    let mut scene = Scene::builtin("office-desk")?;
+    for run in &mut scene.runs {
+        run.integration_times_us = TIMES_US.to_vec();
+    }
+    let simulation = Simulation::new(held_out.model.clone(), scene, MEASURED)?;
+    let standardizers: Vec<Standardizer> =
+        chains.iter().map(|chain| chain.plan(&held_out.calibration)).collect::<Result<_, _>>()?;
+    let shape = simulation.shape();
+    let evaluator = || Evaluator::new(shape, EvaluationSettings::default());
+    let mut evaluators: Vec<Evaluator> = (0..=chains.len()).map(|_| evaluator()).collect();
+    let mut valid = vec![0usize; chains.len()];
+    let (mut measured, mut kept) = (0, f64::NAN);
+    let mut outs: Vec<Standardized> = chains.iter().map(|_| Standardized::new(shape)).collect();
+    for_each(&simulation, |_, simulated| {
+        let frame = &simulated.frame;
+        let mut shared: Plane<PixelFlags> = frame.flags.clone();
+        measured += frame.flags.values().iter().filter(|flags| !flags.contains(PixelFlags::INVALID)).count();
+        for ((standardizer, out), valid) in standardizers.iter().zip(&mut outs).zip(&mut valid) {
+            *valid += standardizer.apply(frame, out)?.valid;
+            shared.values_mut().iter_mut().zip(out.flags.values()).for_each(|(shared, own)| *shared |= *own);
+        }
+        let truth = true_factors(&held_out.model, &held_out.calibration, simulated);
+        let planes = std::iter::once(&truth).chain(outs.iter().map(|out| &out.amplitude));
+        for (evaluator, plane) in evaluators.iter_mut().zip(planes) {
+            evaluator.push(&EvaluationFrame::of_standardized(frame, plane, &shared))?;
+        }
+        kept = kept_of(simulated);
+        Ok(())
+    })?;
+    let still = |evaluator: &Evaluator, valid: usize| {
+        let cv = evaluator.finish().pixel_cv;
+        Still {
+            median_cv: cv.as_ref().map_or(f64::NAN, |cv| cv.median),
+            p95_cv: cv.as_ref().map_or(f64::NAN, |cv| cv.p95),
+            valid: valid as f64 / measured as f64,
+        }
+    };
+    let floor = still(&evaluators[0], measured);
+    let chains = evaluators[1..].iter().zip(&valid).map(|(evaluator, valid)| still(evaluator, *valid)).collect();
+    Ok(StillScene { floor, chains, kept })
+}
+
+/// The frame's own noisy amplitude, times the true factors of its time and true distance.
+fn true_factors(
+    model: &CameraModel,
+    calibration: &isolux::Calibration,
+    simulated: &SimulatedFrame,
+) -> Plane<f32> {
+    let Frame { amplitude, integration_time_us: IntegrationTime::PerFrame(_), .. } = &simulated.frame else {
+        return simulated.frame.amplitude.clone();
+    };
+    let reference_us = calibration.reference.integration_time_us.unwrap_or(f64::NAN);
+    let reference_m = calibration.reference.distance_m;
+    let time = reference_us / time_us(&simulated.frame);
+    let mut out = amplitude.clone();
+    for (value, distance_m) in out.values_mut().iter_mut().zip(simulated.truth.true_distance_m.values()) {
+        let response = model.distance_response(f64::from(*distance_m), reference_m);
+        *value = (f64::from(*value) * time / response) as f32;
+    }
+    out
+}
+
+fn kept_of(simulated: &SimulatedFrame) -> f64 {
+    let truth = &simulated.truth;
+    let pairs = truth.noise_free_amplitude.values().iter().zip(truth.linear_amplitude.values());
+    let mut ratios: Vec<f64> =
+        pairs.map(|(with, without)| f64::from(with / without)).filter(|ratio| ratio.is_finite()).collect();
+    quantile(&mut ratios, 0.05).unwrap_or(f64::NAN)
+}
