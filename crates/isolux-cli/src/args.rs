@@ -31,6 +31,7 @@ pub(crate) enum Command {
     Diagnose(DiagnoseArgs),
     Simulate(SimulateArgs),
     Paper(PaperArgs),
+    Figures(FiguresArgs),
     Completions(CompletionsArgs),
 }
 
@@ -249,6 +250,18 @@ pub(crate) struct PaperArgs {
     /// Seed of the simulated noise
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+}
+
+/// Measure what isolux reaches on cameras and frames that nothing was fitted on, beside the paper and the textbook
+///
+/// Prints a table in Markdown. The simulated cameras need no input; recordings of real cameras are measured where they
+/// are given.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  isolux figures\n  isolux figures --json")]
+pub(crate) struct FiguresArgs {
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Print completions for a shell

@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Command::Diagnose(args) => cmd::diagnose::run(&args),
         Command::Simulate(args) => cmd::simulate::run(&args),
         Command::Paper(args) => cmd::paper::run(&args),
+        Command::Figures(args) => cmd::figures::run(&args),
         Command::Completions(args) => cmd::completions::run(&args),
     };
     match outcome {

@@ -5,6 +5,7 @@ pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
 pub(crate) mod evaluate;
+pub(crate) mod figures;
 pub(crate) mod info;
 pub(crate) mod paper;
 pub(crate) mod simulate;

@@ -3,6 +3,8 @@
 
 pub mod chains;
 pub mod decay;
+pub mod denoise;
 pub mod figure;
+pub mod figures;
 pub mod held_out;
 pub mod still;

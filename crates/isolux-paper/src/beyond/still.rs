@@ -79,7 +79,8 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
         }
     };
     let floor = still(&evaluators[0], measured);
-    let chains = evaluators[1..].iter().zip(&valid).map(|(evaluator, valid)| still(evaluator, *valid)).collect();
+    let chains =
+        evaluators[1..].iter().zip(&valid).map(|(evaluator, valid)| still(evaluator, *valid)).collect();
     Ok(StillScene { floor, chains, kept })
 }
 

@@ -1,0 +1,47 @@
+//! `isolux figures`: what isolux reaches, measured here and now.
+
+use isolux_paper::beyond::figure::Figure;
+use isolux_paper::beyond::figures;
+
+use crate::args::FiguresArgs;
+use crate::console;
+use crate::failure::{Failure, Outcome};
+
+pub(crate) fn run(args: &FiguresArgs) -> Outcome {
+    let progress = console::steps();
+    let found = figures::simulated(&mut |step| progress.set_message(step.to_owned()));
+    progress.finish_and_clear();
+    let found = found.map_err(Failure::data)?;
+    if args.json {
+        return console::print_json(&found.iter().map(json).collect::<Vec<_>>());
+    }
+    console::print(markdown(&found))
+}
+
+fn json(figure: &Figure) -> serde_json::Value {
+    serde_json::json!({
+        "subject": figure.subject,
+        "what": figure.what,
+        "value": figure.value.is_finite().then_some(figure.value),
+        "text": figure.value_text(),
+        "aim": figure.aim_text(),
+        "met": figure.met(),
+    })
+}
+
+/// A table as Markdown writes it.
+fn markdown(figures: &[Figure]) -> String {
+    let mut lines =
+        vec!["| step | figure | value | aim | met |".to_owned(), "|---|---|---|---|---|".to_owned()];
+    lines.extend(figures.iter().map(|figure| {
+        let met = figure.met().map_or("", |met| if met { "yes" } else { "**no**" });
+        format!(
+            "| {} | {} | {} | {} | {met} |",
+            figure.subject,
+            figure.what,
+            figure.value_text(),
+            figure.aim_text()
+        )
+    }));
+    lines.join("\n")
+}
