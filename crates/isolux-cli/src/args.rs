@@ -167,6 +167,9 @@ pub(crate) struct EvaluateArgs {
     /// Leave out pixels flagged LOW_SIGNAL or SATURATED, before and after
     #[arg(long)]
     pub(crate) trusted: bool,
+    /// Leave out the textbook's and the paper's chain beside the chosen one: faster
+    #[arg(long)]
+    pub(crate) alone: bool,
     /// Also write a page with the figures, curves and pictures
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,

@@ -11,6 +11,7 @@ use crate::chain::{Chain, Smoothed};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
+use crate::rivals::{Pass, Rivals, Standing};
 
 /// Which pixels count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub(crate) enum Pixels {
 #[derive(Clone, Debug)]
 pub(crate) struct Assessment {
     pub(crate) comparison: Comparison,
+    /// The chains beside the chosen one.
+    pub(crate) rivals: Vec<Standing>,
     /// Mean over the counted pixels at each integration time (µs, increasing), before and after.
     pub(crate) means: Vec<MeanAtTime>,
     /// A few frames that show the range: those of the shortest, the reference and the longest time, or the first,
@@ -47,13 +50,18 @@ pub(crate) fn assess(
     standardizer: &Standardizer,
     calibration: Option<&Calibration>,
     pixels: Pixels,
+    rivals: Rivals,
 ) -> Outcome<Assessment> {
     let metadata = recording.metadata().clone();
     let reference_us = calibration
         .and_then(|c| c.reference.integration_time_us)
         .unwrap_or(isolux::calibration::REFERENCE_TIME_US);
-    let mut evaluation = Both::new(&metadata, standardizer, pixels);
-    let wanted = standardizer.needed() | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::TARGET;
+    let mut evaluation = Both::new(&metadata, standardizer, pixels, rivals);
+    let wanted = standardizer.needed()
+        | evaluation.rivals.needed()
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::TARGET;
     let times = times(recording)?;
     let reference = nearest_reference(times.iter().copied(), reference_us);
     if let Some(index) = reference {
@@ -83,6 +91,7 @@ pub(crate) fn assess(
     }
     Ok(Assessment {
         comparison: Comparison::new(&evaluation.before, &evaluation.after),
+        rivals: evaluation.rivals.standings(&evaluation.before),
         means: evaluation.means.into_values().map(|sums| sums.mean()).collect(),
         shown_frames: shown_frames(&times, reference),
     })
@@ -113,11 +122,12 @@ fn shown_frames(times: &[Option<f64>], reference: Option<usize>) -> Vec<usize> {
     shown.into_iter().flatten().collect()
 }
 
-/// The two evaluators and what makes the second's frames.
+/// The two evaluators, what makes the second's frames, and the chains beside it.
 struct Both<'a> {
     chain: Chain<'a>,
     smoothed: Smoothed,
     pixels: Pixels,
+    rivals: Rivals,
     out: Standardized,
     trusted: Plane<PixelFlags>,
     before: Evaluator,
@@ -152,7 +162,12 @@ fn add(sums: &mut (f64, f64), values: &Plane<f32>, flags: &Plane<PixelFlags>) {
 }
 
 impl<'a> Both<'a> {
-    fn new(metadata: &isolux_io::Metadata, standardizer: &'a Standardizer, pixels: Pixels) -> Self {
+    fn new(
+        metadata: &isolux_io::Metadata,
+        standardizer: &'a Standardizer,
+        pixels: Pixels,
+        rivals: Rivals,
+    ) -> Self {
         let evaluator = || Evaluator::new(metadata.shape, EvaluationSettings::default());
         let chain = Chain::new(standardizer);
         let out = Standardized::new(metadata.shape);
@@ -161,6 +176,7 @@ impl<'a> Both<'a> {
             smoothed: chain.smoothed(),
             chain,
             pixels,
+            rivals,
             out,
             trusted,
             before: evaluator(),
@@ -183,7 +199,9 @@ impl<'a> Both<'a> {
         let (before, after) =
             rayon::join(|| pass(&mut self.before, &raw), || pass(&mut self.after, &standardized));
         before?;
-        Ok(after?)
+        after?;
+        let trusted = (self.pixels == Pixels::Trusted).then_some(&self.trusted);
+        self.rivals.take(frame, trusted, pass)
     }
 
     /// Takes a frame of the recording in its turn.
@@ -210,9 +228,6 @@ impl<'a> Both<'a> {
         }
     }
 }
-
-/// What is done with a frame by each of the two evaluators.
-type Pass = fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>;
 
 /// The flags with INVALID where a pixel is LOW_SIGNAL or SATURATED.
 fn mark_distrusted(flags: &Plane<PixelFlags>, out: &mut Plane<PixelFlags>) {

@@ -58,6 +58,9 @@ pub(crate) fn section(
         blocks.push(Block::Chart(means_chart(id, assessment)));
     }
     blocks.push(Block::Table(figures_table(id, assessment)));
+    if !assessment.rivals.is_empty() {
+        blocks.push(Block::Table(crate::beside::page_table(id, assessment)));
+    }
     Section { id: id.to_owned(), title: title.to_owned(), blocks }
 }
 

@@ -2,6 +2,7 @@
 
 mod args;
 mod assessment;
+mod beside;
 mod chain;
 mod cmd;
 mod console;
@@ -11,6 +12,7 @@ mod frames;
 mod interrupt;
 mod option_values;
 mod output;
+mod rivals;
 mod step_args;
 
 use std::io::Write;

@@ -17,6 +17,7 @@ use crate::assessment::{Pixels, assess};
 use crate::cmd::{calibrate, evaluate, simulate, standardize};
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::rivals::Rivals;
 use crate::{evaluation_page, frames};
 
 /// Marks a folder as a demo, which the next one may replace.
@@ -176,7 +177,8 @@ impl Demo {
         let output = self.folder.join("standardized").join(exhibit.scene);
         let options = standardize::WriteOptions::default();
         standardize::standardize(&mut *input, &standardizer, Some(calibration), &output, options)?;
-        let assessment = assess(&mut *input, &standardizer, Some(calibration), Pixels::Trusted)?;
+        let assessment =
+            assess(&mut *input, &standardizer, Some(calibration), Pixels::Trusted, Rivals::none())?;
         console::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;
         console::print(evaluate::describe_rows(&assessment.comparison, |metric| {
             exhibit.figures.iter().any(|wanted| metric.starts_with(wanted))

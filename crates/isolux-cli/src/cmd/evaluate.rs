@@ -12,7 +12,8 @@ use crate::assessment::{Assessment, Pixels, assess};
 use crate::console::{self, table};
 use crate::evaluation_page;
 use crate::failure::{Failure, Outcome};
-use crate::{frames, output};
+use crate::rivals::Rivals;
+use crate::{beside, frames, output};
 
 pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     let inputs = [Some(args.recording.as_path()), args.calibration.as_deref()];
@@ -25,15 +26,31 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
         Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
     standardizer.notes().iter().for_each(console::note);
     let pixels = if args.trusted { Pixels::Trusted } else { Pixels::Valid };
-    let assessment = assess(&mut *recording, &standardizer, calibration.as_ref(), pixels)?;
+    let rivals = if args.alone {
+        Rivals::none()
+    } else {
+        let metadata = recording.metadata();
+        Rivals::new(&standardizer, calibration.as_ref(), metadata.available, metadata.shape)
+    };
+    let assessment = assess(&mut *recording, &standardizer, calibration.as_ref(), pixels, rivals)?;
     if let Some(report) = &args.report {
         write_page(&mut *recording, &standardizer, calibration.as_ref(), &assessment, report)?;
     }
     if args.json {
         let steps: Vec<&str> = standardizer.steps().iter().map(|step| step.term).collect();
-        return console::print_json(&json!({"steps": steps, "comparison": assessment.comparison}));
+        let beside = assessment.rivals.iter().map(
+            |rival| json!({"name": rival.name, "steps": rival.steps, "figures": rival.comparison.after}),
+        );
+        let beside: Vec<_> = beside.collect();
+        return console::print_json(
+            &json!({"steps": steps, "comparison": assessment.comparison, "beside": beside}),
+        );
     }
-    console::print(describe(&assessment.comparison))
+    if assessment.rivals.is_empty() {
+        return console::print(describe(&assessment.comparison));
+    }
+    let steps: Vec<&str> = standardizer.steps().iter().map(|step| step.term).collect();
+    console::print(beside::describe(&assessment, &steps))
 }
 
 /// One page that needs nothing beside it.
@@ -60,19 +77,23 @@ pub(crate) fn describe(comparison: &Comparison) -> String {
 pub(crate) fn describe_rows(comparison: &Comparison, wanted: impl Fn(&str) -> bool) -> String {
     let header = ["figure", "before", "after", "better", "valid before", "valid after"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    let mut missing: Vec<(Unavailable, Vec<String>)> = Vec::new();
-    for row in comparison.rows().into_iter().filter(|row| wanted(&row.metric)) {
-        match (row.before, row.after) {
-            (Err(reason), _) | (_, Err(reason)) => {
-                match missing.iter_mut().find(|(known, _)| *known == reason) {
-                    Some((_, metrics)) => metrics.push(row.metric),
-                    None => missing.push((reason, vec![row.metric])),
-                }
+    let found: Vec<ComparisonRow> = comparison.rows().into_iter().filter(|row| wanted(&row.metric)).collect();
+    rows.extend(found.iter().filter_map(|row| Some(line(row, row.before.ok()?, row.after.ok()?))));
+    table(&rows) + &untold(&found)
+}
+
+/// The figures that the recording does not tell, by reason; empty where it tells all.
+pub(crate) fn untold(rows: &[ComparisonRow]) -> String {
+    let mut missing: Vec<(Unavailable, Vec<&str>)> = Vec::new();
+    for row in rows {
+        if let (Err(reason), _) | (_, Err(reason)) = (row.before, row.after) {
+            match missing.iter_mut().find(|(known, _)| *known == reason) {
+                Some((_, metrics)) => metrics.push(&row.metric),
+                None => missing.push((reason, vec![&row.metric])),
             }
-            (Ok(before), Ok(after)) => rows.push(line(&row, before, after)),
         }
     }
-    let mut text = table(&rows);
+    let mut text = String::new();
     for (reason, metrics) in missing {
         text += &format!("\nnot told by this recording, since {reason}:\n  {}", metrics.join("\n  "));
     }
@@ -80,10 +101,7 @@ pub(crate) fn describe_rows(comparison: &Comparison, wanted: impl Fn(&str) -> bo
 }
 
 fn line(row: &ComparisonRow, before: f64, after: f64) -> Vec<String> {
-    let value = |value: f64| match row.unit {
-        "ratio" => format!("{:.2} %", 100.0 * value),
-        unit => format!("{value:.3} {unit}"),
-    };
+    let value = |value| written(row, value);
     let share = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), |s| format!("{:.1} %", 100.0 * s));
     vec![
         row.metric.clone(),
@@ -93,6 +111,14 @@ fn line(row: &ComparisonRow, before: f64, after: f64) -> Vec<String> {
         share(row.before_valid_fraction),
         share(row.after_valid_fraction),
     ]
+}
+
+/// A figure with its unit.
+pub(crate) fn written(row: &ComparisonRow, value: f64) -> String {
+    match row.unit {
+        "ratio" => format!("{:.2} %", 100.0 * value),
+        unit => format!("{value:.3} {unit}"),
+    }
 }
 
 /// Where a figure should go, in words.

@@ -1,0 +1,109 @@
+//! The chains that an evaluation shows beside the chosen one, on the same frames: the textbook's and the paper's.
+
+use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator};
+use isolux::standardize::{DistanceStep, Method, SpecularStep, StandardizeError, TimeStep};
+use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardized, Standardizer};
+
+/// What is done with a frame by an evaluator.
+pub(crate) type Pass = fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>;
+
+/// A chain beside the chosen one, and its figures.
+#[derive(Clone, Debug)]
+pub(crate) struct Standing {
+    pub(crate) name: &'static str,
+    /// The names of its steps, in their order.
+    pub(crate) steps: Vec<&'static str>,
+    /// Against the raw amplitude.
+    pub(crate) comparison: Comparison,
+}
+
+/// One rival at work.
+struct Rival {
+    name: &'static str,
+    standardizer: Standardizer,
+    out: Standardized,
+    flags: Plane<PixelFlags>,
+    evaluator: Evaluator,
+}
+
+/// All of them.
+pub(crate) struct Rivals(Vec<Rival>);
+
+impl Rivals {
+    /// Nobody.
+    pub(crate) fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Those that the recording and the calibration allow and that do not do the same as `chosen`.
+    pub(crate) fn new(
+        chosen: &Standardizer,
+        calibration: Option<&Calibration>,
+        available: Channels,
+        shape: Shape,
+    ) -> Self {
+        let distance =
+            if available.contains(Channels::DISTANCE) { DistanceStep::Square } else { DistanceStep::None };
+        let time =
+            if available.contains(Channels::INTEGRATION_TIME) { TimeStep::Linear } else { TimeStep::None };
+        let textbook = Choice {
+            time: Some(time),
+            distance: Some(distance),
+            specular: Some(SpecularStep::None),
+            ..Choice::default()
+        };
+        let paper = Choice { method: Method::Paper, ..Choice::default() };
+        let rival = |(name, choice): (&'static str, Choice)| {
+            // A chain that cannot be planned here is nobody's rival.
+            let standardizer = Standardizer::plan(&choice, calibration, available).ok()?;
+            let same = does_the_same(&standardizer, chosen) || standardizer.steps().is_empty();
+            let evaluator = Evaluator::new(shape, EvaluationSettings::default());
+            let flags = Plane::filled(shape, PixelFlags::empty());
+            (!same).then(|| Rival { name, standardizer, out: Standardized::new(shape), flags, evaluator })
+        };
+        Self([("textbook", textbook), ("paper", paper)].into_iter().filter_map(rival).collect())
+    }
+
+    /// The channels that they read.
+    pub(crate) fn needed(&self) -> Channels {
+        self.0.iter().fold(Channels::empty(), |all, rival| all | rival.standardizer.needed())
+    }
+
+    /// Takes a frame. Pixels that are INVALID in `trusted`, where it is given, do not count.
+    pub(crate) fn take(
+        &mut self,
+        frame: &Frame,
+        trusted: Option<&Plane<PixelFlags>>,
+        pass: Pass,
+    ) -> Result<(), StandardizeError> {
+        for rival in &mut self.0 {
+            rival.standardizer.apply(frame, &mut rival.out)?;
+            rival.flags.reshape(frame.shape(), PixelFlags::empty());
+            rival.flags.values_mut().copy_from_slice(rival.out.flags.values());
+            let trusted = trusted.into_iter().flat_map(Plane::values);
+            for (flags, trusted) in rival.flags.values_mut().iter_mut().zip(trusted) {
+                *flags |= *trusted & PixelFlags::INVALID;
+            }
+            let values = EvaluationFrame::of_standardized(frame, &rival.out.amplitude, &rival.flags);
+            pass(&mut rival.evaluator, &values)?;
+        }
+        Ok(())
+    }
+
+    /// Everybody's figures, against those of the raw amplitude.
+    pub(crate) fn standings(&self, raw: &Evaluator) -> Vec<Standing> {
+        let standing = |rival: &Rival| Standing {
+            name: rival.name,
+            steps: rival.standardizer.steps().iter().map(|step| step.term).collect(),
+            comparison: Comparison::new(raw, &rival.evaluator),
+        };
+        self.0.iter().map(standing).collect()
+    }
+}
+
+/// Whether a chain without a step for highlights scales like the chosen one, or is the chosen one.
+fn does_the_same(rival: &Standardizer, chosen: &Standardizer) -> bool {
+    let limits = rival.steps().iter().any(|step| step.effect == "specular");
+    let scaling = chosen.steps().iter().filter(|step| limits || step.effect != "specular");
+    rival.steps().iter().eq(scaling)
+}
