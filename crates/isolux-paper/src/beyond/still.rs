@@ -1,7 +1,7 @@
 //! A still scene over integration times that does not saturate: how near a chain comes to what the camera's noise
 //! allows.
 
-use isolux::evaluate::{EvaluationFrame, EvaluationSettings, Evaluator};
+use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, SnrStratum};
 use isolux::statistics::quantile;
 use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
@@ -15,7 +15,7 @@ use crate::measure::for_each;
 const TIMES_US: [f64; 6] = [1000.0, 2000.0, 4000.0, 8000.0, 12_000.0, 16_000.0];
 
 /// What a chain leaves of a still scene over the integration times.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Still {
     /// Median over the pixels of the coefficient of variation over integration times.
     pub median_cv: f64,
@@ -23,6 +23,8 @@ pub struct Still {
     pub p95_cv: f64,
     /// Share of the pixels that the chain gives a value, of those that the camera measured.
     pub valid: f64,
+    /// The median by the raw amplitude's signal-to-noise ratio; empty where that is not known.
+    pub by_snr: Vec<SnrStratum>,
 }
 
 /// A held-out camera before the desk.
@@ -50,6 +52,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
         chains.iter().map(|chain| chain.plan(&held_out.calibration)).collect::<Result<_, _>>()?;
     let shape = simulation.shape();
     let evaluator = || Evaluator::new(shape, EvaluationSettings::default());
+    let mut raw = evaluator();
     let mut evaluators: Vec<Evaluator> = (0..=chains.len()).map(|_| evaluator()).collect();
     let mut valid = vec![0usize; chains.len()];
     let (mut measured, mut kept) = (0, f64::NAN);
@@ -63,6 +66,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
             shared.values_mut().iter_mut().zip(out.flags.values()).for_each(|(shared, own)| *shared |= *own);
         }
         let truth = true_factors(&held_out.model, &held_out.calibration, simulated);
+        raw.push(&EvaluationFrame::of_standardized(frame, &frame.amplitude, &shared))?;
         let planes = std::iter::once(&truth).chain(outs.iter().map(|out| &out.amplitude));
         for (evaluator, plane) in evaluators.iter_mut().zip(planes) {
             evaluator.push(&EvaluationFrame::of_standardized(frame, plane, &shared))?;
@@ -71,11 +75,12 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
         Ok(())
     })?;
     let still = |evaluator: &Evaluator, valid: usize| {
-        let cv = evaluator.finish().pixel_cv;
+        let evaluation = Comparison::new(&raw, evaluator).after;
         Still {
-            median_cv: cv.as_ref().map_or(f64::NAN, |cv| cv.median),
-            p95_cv: cv.as_ref().map_or(f64::NAN, |cv| cv.p95),
+            median_cv: evaluation.pixel_cv.as_ref().map_or(f64::NAN, |cv| cv.median),
+            p95_cv: evaluation.pixel_cv.as_ref().map_or(f64::NAN, |cv| cv.p95),
             valid: valid as f64 / measured as f64,
+            by_snr: evaluation.pixel_cv_by_snr.unwrap_or_default(),
         }
     };
     let floor = still(&evaluators[0], measured);

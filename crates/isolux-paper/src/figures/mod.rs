@@ -1,5 +1,6 @@
 //! One file per experiment; each makes a section of the page.
 
+mod beyond;
 mod competition;
 mod distance;
 mod exposure;
@@ -27,5 +28,6 @@ pub const ALL: &[(&str, Experiment)] = &[
     ("figures 11 and 12", objects::section),
     ("one set of parameters", purpose::section),
     ("rivals on the same frames", competition::section),
+    ("beyond the paper", beyond::section),
     ("open questions", open_questions::section),
 ];
