@@ -1,7 +1,7 @@
 //! The options that choose the steps of the chain.
 
 use clap::{Args, ValueEnum};
-use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
+use isolux::specular::{HistogramRule, KneeRule, PercentRule, SigmaRule};
 use isolux::standardize::{DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
 use isolux::{Choice, DenoiseRule, SpecularRule};
 
@@ -26,7 +26,7 @@ pub(crate) struct StepArgs {
     /// Step for highlights [default: histogram]
     #[arg(long, value_enum)]
     pub(crate) specular: Option<SpecularArg>,
-    /// Pixels that a value needs, for --specular histogram [default: max(2, 0.0005 of the valid pixels)]
+    /// Pixels that a value needs, for --specular histogram and knee [default: max(2, 0.0005 of the valid pixels)]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) specular_occurrences: Option<u32>,
     /// Standard deviations above the mean, for --specular sigma [default: 4]
@@ -98,6 +98,8 @@ pub(crate) enum SpecularArg {
     Sigma,
     /// Limit at a fraction of the maximum, or a quantile
     Percent,
+    /// Compress what lies above the histogram's limit, keeping the order
+    Knee,
     /// Leave them
     None,
 }
@@ -134,8 +136,9 @@ impl StepArgs {
 
     fn specular(&self) -> Result<SpecularStep, Failure> {
         let chosen = self.specular.unwrap_or(SpecularArg::Histogram);
+        let counts = if chosen == SpecularArg::Knee { chosen } else { SpecularArg::Histogram };
         let given = [
-            (self.specular_occurrences.is_some(), "--specular-occurrences", SpecularArg::Histogram),
+            (self.specular_occurrences.is_some(), "--specular-occurrences", counts),
             (self.specular_deviations.is_some(), "--specular-deviations", SpecularArg::Sigma),
             (self.specular_fraction.is_some(), "--specular-fraction", SpecularArg::Percent),
             (self.specular_quantile.is_some(), "--specular-quantile", SpecularArg::Percent),
@@ -145,10 +148,10 @@ impl StepArgs {
             let message = format!("{option} belongs to --specular {rule}, but --specular {chosen} is chosen");
             return Err(Failure::usage(message));
         }
+        let histogram = HistogramRule { occurrences: self.specular_occurrences };
         Ok(match chosen {
-            SpecularArg::Histogram => SpecularStep::Limit(SpecularRule::Histogram(HistogramRule {
-                occurrences: self.specular_occurrences,
-            })),
+            SpecularArg::Histogram => SpecularStep::Limit(SpecularRule::Histogram(histogram)),
+            SpecularArg::Knee => SpecularStep::Limit(SpecularRule::Knee(KneeRule { cutoff: histogram })),
             SpecularArg::Sigma => SpecularStep::Limit(SpecularRule::Sigma(SigmaRule {
                 deviations: self.specular_deviations.unwrap_or(SigmaRule::default().deviations),
             })),

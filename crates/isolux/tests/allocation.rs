@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use isolux::specular::{PercentRule, SigmaRule};
+use isolux::specular::{KneeRule, PercentRule, SigmaRule};
 use isolux::standardize::{DenoiseStep, SpecularStep};
 use isolux::{
     Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized,
@@ -53,7 +53,8 @@ fn nothing_is_allocated_per_frame() {
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
     let percent = SpecularStep::Limit(SpecularRule::Percent(PercentRule::Quantile(0.9)));
     let sigma = SpecularStep::Limit(SpecularRule::Sigma(SigmaRule::default()));
-    for specular in [None, Some(SpecularStep::None), Some(percent), Some(sigma)] {
+    let knee = SpecularStep::Limit(SpecularRule::Knee(KneeRule::default()));
+    for specular in [None, Some(SpecularStep::None), Some(percent), Some(sigma), Some(knee)] {
         let choice = Choice { specular, ..Choice::default() };
         let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
         let shape = Shape::new(48, 64);

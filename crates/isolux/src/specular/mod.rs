@@ -1,10 +1,12 @@
 //! Specular highlights (section 2.3 of the paper): find a cutoff, limit what lies above it, flag it.
 
 mod histogram;
+mod knee;
 mod percent;
 mod sigma;
 
 pub use histogram::HistogramRule;
+pub use knee::KneeRule;
 pub use percent::PercentRule;
 pub use sigma::SigmaRule;
 
@@ -22,6 +24,8 @@ pub enum SpecularRule {
     Sigma(SigmaRule),
     /// Fraction of the maximum, or a quantile.
     Percent(PercentRule),
+    /// Compression above the histogram's cutoff that keeps the order.
+    Knee(KneeRule),
 }
 
 impl SpecularRule {
@@ -32,6 +36,7 @@ impl SpecularRule {
             Self::Histogram(_) => "histogram",
             Self::Sigma(_) => "sigma",
             Self::Percent(_) => "percent",
+            Self::Knee(_) => "knee",
         }
     }
 
@@ -42,6 +47,7 @@ impl SpecularRule {
             Self::Histogram(rule) => rule.parameters(),
             Self::Sigma(rule) => format!("{} standard deviations above the mean", rule.deviations),
             Self::Percent(rule) => rule.parameters(),
+            Self::Knee(rule) => rule.parameters(),
         }
     }
 
@@ -51,13 +57,23 @@ impl SpecularRule {
             Self::Histogram(rule) => rule.cutoff(values, quantiles),
             Self::Sigma(rule) => rule.cutoff(values),
             Self::Percent(rule) => rule.cutoff(values, quantiles),
+            Self::Knee(rule) => rule.cutoff(values, quantiles),
+        }
+    }
+
+    /// Brings values above `cutoff` down, as the rule does it, and flags them.
+    pub(crate) fn limit(&self, values: &mut Plane<f32>, flags: &mut Plane<PixelFlags>, cutoff: f32) {
+        let (values, flags) = (values.values_mut(), flags.values_mut());
+        match self {
+            Self::Histogram(_) | Self::Sigma(_) | Self::Percent(_) => clip(values, flags, cutoff),
+            Self::Knee(_) => knee::compress(values, flags, cutoff),
         }
     }
 }
 
 /// Sets values above `cutoff` to it and flags them.
-pub(crate) fn limit(values: &mut Plane<f32>, flags: &mut Plane<PixelFlags>, cutoff: f32) {
-    for (value, flags) in values.values_mut().iter_mut().zip(flags.values_mut()) {
+fn clip(values: &mut [f32], flags: &mut [PixelFlags], cutoff: f32) {
+    for (value, flags) in values.iter_mut().zip(flags) {
         let above = *value > cutoff;
         *value = if above { cutoff } else { *value };
         *flags |= PixelFlags::from_bits_retain(u16::from(above) * PixelFlags::SPECULAR.bits());

@@ -15,7 +15,7 @@ use crate::flags::PixelFlags;
 use crate::frame::{Channels, Frame};
 use crate::plane::{Plane, Shape, ShapeError};
 use crate::quantile::PositiveQuantiles;
-use crate::specular;
+use crate::specular::SpecularRule;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
 use plan::Plan;
@@ -99,6 +99,13 @@ impl Standardized {
         self.flags.reshape(shape, PixelFlags::empty());
         self.quantiles.reserve(shape.pixels());
     }
+
+    /// Limits the highlights; the cutoff, where the rule found one.
+    fn limit(&mut self, rule: SpecularRule) -> Option<f32> {
+        let cutoff = rule.cutoff(self.amplitude.values(), &mut self.quantiles)?;
+        rule.limit(&mut self.amplitude, &mut self.flags, cutoff);
+        Some(cutoff)
+    }
 }
 
 impl Standardizer {
@@ -181,11 +188,7 @@ impl Standardizer {
         out.flags.values_mut().copy_from_slice(frame.flags.values());
         let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
         self.scale(frame, distance_m, time.gain, out)?;
-        let specular_cutoff =
-            self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.quantiles));
-        if let Some(cutoff) = specular_cutoff {
-            specular::limit(&mut out.amplitude, &mut out.flags, cutoff);
-        }
+        let specular_cutoff = self.plan.specular.and_then(|rule| out.limit(rule));
         Ok(FrameSummary {
             specular_cutoff,
             time_refused: time.refused,
