@@ -110,8 +110,8 @@ pub(crate) struct CalibrateArgs {
 
 /// Standardize a recording
 ///
-/// The output is a recording with `standardized_amplitude` (f32, NaN where invalid) and `flags` (u16; their
-/// meaning is in its recording.json). Without -c, textbook physics is used (t_ref/t, d²), as far as the channels
+/// The output is a recording with `standardized_amplitude` (f32, NaN where invalid), `flags` (u16; their
+/// meaning is in its recording.json) and, where the noise is known, `sigma`, the predicted standard deviation. Without -c, textbook physics is used (t_ref/t, d²), as far as the channels
 /// are there.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
@@ -119,7 +119,8 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o desk-standardized.npz --keep-input\n  \
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none\n  \
-    isolux standardize desk -c CAMERA.json -o out --denoise wiener")]
+    isolux standardize desk -c CAMERA.json -o out --denoise wiener\n  \
+    isolux standardize brackets -c CAMERA.json -o merged --merge-bracket")]
 pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]
@@ -132,6 +133,11 @@ pub(crate) struct StandardizeArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) steps: StepArgs,
+    /// Merge brackets: frames of a still scene at several integration times into one, weighted by the predicted sigma,
+    /// saturated pixels left out. A bracket ends where an integration time recurs, or after N frames
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, conflicts_with = "keep_input",
+          value_parser = clap::value_parser!(u16).range(2..))]
+    pub(crate) merge_bracket: Option<Option<u16>>,
     /// Copy the input's channels into the output
     #[arg(long)]
     pub(crate) keep_input: bool,

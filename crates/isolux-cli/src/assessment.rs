@@ -195,7 +195,8 @@ impl<'a> Both<'a> {
             Pixels::Trusted => (&self.trusted, &self.trusted),
         };
         let raw = EvaluationFrame::of_standardized(frame, &frame.amplitude, before_flags);
-        let standardized = EvaluationFrame::of_standardized(frame, &self.out.amplitude, after_flags);
+        let standardized = EvaluationFrame::of_standardized(frame, &self.out.amplitude, after_flags)
+            .with_sigma(self.out.sigma.as_ref());
         let (before, after) =
             rayon::join(|| pass(&mut self.before, &raw), || pass(&mut self.after, &standardized));
         before?;

@@ -13,7 +13,7 @@ pub(crate) fn describe(assessment: &Assessment, chosen: &[&str]) -> String {
     let mut rows = vec![vec!["figure".to_owned(), "better".to_owned(), "raw".to_owned()]];
     rows[0].extend(names(assessment));
     let ours = assessment.comparison.rows();
-    for (index, row) in ours.iter().enumerate().filter(|(_, row)| row.before.is_ok() && row.after.is_ok()) {
+    for (index, row) in ours.iter().enumerate().filter(|(_, row)| row.is_told()) {
         let raw = cell(row, &row.before, row.before_valid_fraction);
         let mut line = vec![row.metric.clone(), direction(row.better).to_owned(), raw];
         line.extend(chains.iter().filter_map(|rows| rows.get(index)).map(after));

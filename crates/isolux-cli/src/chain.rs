@@ -7,9 +7,10 @@ use isolux_io::Recording;
 
 use crate::failure::Outcome;
 
-/// The distances that a frame is to be scaled by, where they depend on the frames before it; empty otherwise.
+/// The distances that a frame is to be scaled by, and the share of their variance that is left, where they depend on
+/// the frames before it; empty otherwise.
 #[derive(Clone, Debug)]
-pub(crate) struct Smoothed(Option<Plane<f32>>);
+pub(crate) struct Smoothed(Option<[Plane<f32>; 2]>);
 
 /// What happens to the frames in order. A frame's result depends on it and the few before it alone.
 #[derive(Debug)]
@@ -25,18 +26,30 @@ impl<'a> Chain<'a> {
 
     /// Memory for one frame at work.
     pub(crate) fn smoothed(&self) -> Smoothed {
-        Smoothed(self.history.as_ref().map(|_| Plane::filled(Shape::new(0, 0), f32::NAN)))
+        let plane = || Plane::filled(Shape::new(0, 0), f32::NAN);
+        Smoothed(self.history.as_ref().map(|_| [plane(), plane()]))
     }
 
     /// Bytes per pixel of [`Self::smoothed`] and of the history.
     pub(crate) fn bytes_per_pixel(&self) -> (usize, usize) {
-        self.history.as_ref().map_or((0, 0), |_| (4, 8 * TemporalMean::FRAMES))
+        self.history.as_ref().map_or((0, 0), |_| (8, 8 * TemporalMean::FRAMES))
+    }
+
+    /// True where results have a predicted standard deviation.
+    pub(crate) fn predicts_sigma(&self) -> bool {
+        self.standardizer.predicts_sigma()
     }
 
     /// Takes the next frame in order; afterwards [`apply`] may work on it in any order and thread.
     pub(crate) fn take(&mut self, frame: &Frame, out: &mut Smoothed) -> Result<(), StandardizeError> {
         match (&mut self.history, &mut out.0) {
-            (Some(history), Some(out)) => history.push(frame, out),
+            (Some(history), Some([distance_m, left])) => {
+                history.push(frame, distance_m)?;
+                if self.standardizer.predicts_sigma() {
+                    history.variance_left(left);
+                }
+                Ok(())
+            }
             _ => Ok(()),
         }
     }
@@ -90,7 +103,10 @@ pub(crate) fn apply(
     out: &mut Standardized,
 ) -> Result<FrameSummary, StandardizeError> {
     match &smoothed.0 {
-        Some(distance_m) => standardizer.apply_at(frame, distance_m, out),
+        Some([distance_m, left]) if standardizer.predicts_sigma() => {
+            standardizer.apply_denoised(frame, distance_m, left, out)
+        }
+        Some([distance_m, _]) => standardizer.apply_at(frame, distance_m, out),
         None => standardizer.apply(frame, out),
     }
 }

@@ -13,6 +13,7 @@ mod interrupt;
 mod option_values;
 mod output;
 mod rivals;
+mod sigma;
 mod step_args;
 
 use std::io::Write;

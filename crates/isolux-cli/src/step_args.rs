@@ -7,6 +7,7 @@ use isolux::{Choice, DenoiseRule, SpecularRule};
 
 use crate::failure::Failure;
 use crate::option_values::{fraction, positive};
+use crate::sigma::SigmaArgs;
 
 /// Which steps to apply.
 #[derive(Debug, Default, Args)]
@@ -41,6 +42,8 @@ pub(crate) struct StepArgs {
     /// Flag amplitudes below this as LOW_SIGNAL, DN [default: from the calibration]
     #[arg(long, value_name = "DN", value_parser = positive)]
     pub(crate) low_signal_dn: Option<f64>,
+    #[command(flatten)]
+    pub(crate) sigma: SigmaArgs,
 }
 
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
@@ -131,7 +134,11 @@ impl StepArgs {
             DenoiseArg::Temporal => DenoiseStep::Smooth(DenoiseRule::Temporal),
         });
         let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
-        Ok(Choice { method, time, denoise, distance, specular: Some(self.specular()?), low_signal_below_dn })
+        let specular = Some(self.specular()?);
+        let mut choice =
+            Choice { method, time, denoise, distance, specular, low_signal_below_dn, ..Choice::default() };
+        self.sigma.complete(&mut choice)?;
+        Ok(choice)
     }
 
     fn specular(&self) -> Result<SpecularStep, Failure> {

@@ -20,6 +20,9 @@ pub enum PaperError {
     /// A frame.
     #[error("standardize: {0}")]
     Standardize(#[from] StandardizeError),
+    /// A bracket.
+    #[error("merge: {0}")]
+    Merge(#[from] isolux::standardize::MergeError),
     /// Planes that do not fit together.
     #[error("shape: {0}")]
     Shape(#[from] isolux::ShapeError),

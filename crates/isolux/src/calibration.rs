@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Cubic, Lut, ParameterError, Spline, require};
+use crate::terms::{Cubic, Lut, Noise, ParameterError, Spline, require};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -67,6 +67,9 @@ pub struct Terms {
     /// Distance, a smooth law around the inverse square.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spline: Option<Spline>,
+    /// Noise of the amplitude.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<Noise>,
 }
 
 /// A camera's calibration, as its file holds it.
@@ -147,6 +150,7 @@ impl Calibration {
         require(!needs_time, "reference.integration_time_us", "nothing", "the time at which the lut is 1")?;
         self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
         self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
+        self.terms.noise.as_ref().map_or(Ok(()), Noise::check)?;
         let Some(spline) = &self.terms.spline else { return Ok(()) };
         let gauge_m = spline.reference_distance_m;
         require(gauge_m == distance_m, "spline.reference_distance_m", gauge_m, "reference.distance_m")?;

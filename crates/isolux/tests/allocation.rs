@@ -4,7 +4,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use isolux::specular::{KneeRule, PercentRule, SigmaRule};
-use isolux::standardize::{DenoiseStep, SpecularStep};
+use isolux::standardize::{DenoiseStep, SigmaStep, SpecularStep};
+use isolux::terms::NoiseModel;
+use isolux::terms::noise::AmplitudeNoise;
 use isolux::{
     Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized,
     Standardizer,
@@ -68,6 +70,42 @@ fn nothing_is_allocated_per_frame() {
             standardizer.apply(frame, &mut out).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{specular:?}");
+    }
+}
+
+#[test]
+fn nothing_is_allocated_per_predicted_frame() {
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let by_amplitude = AmplitudeNoise {
+        read_variance_dn2: 4.0,
+        shot_variance_dn2_per_dn: 0.5,
+        ambient_variance_dn2_per_us: 1e-3,
+    };
+    let noise = Some(NoiseModel { by_amplitude, by_intensity: None });
+    let shape = Shape::new(48, 64);
+    let frames =
+        [(900, false), (0, false), (3, true)].map(|(spread, per_pixel)| frame(shape, spread, per_pixel));
+    for modulation_frequency_hz in [Some(20e6), None] {
+        for denoise in [None, Some(DenoiseStep::Smooth(DenoiseRule::Wiener))] {
+            let sigma = SigmaStep::Required;
+            let choice = Choice { denoise, sigma, noise, modulation_frequency_hz, ..Choice::default() };
+            let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
+            let (single, mut merge) = standardizer.bracket().unwrap();
+            let (mut out, mut merged) = (Standardized::new(shape), Standardized::new(shape));
+            let mut before = 0;
+            for round in 0..3 {
+                // The first bracket makes the memory of all.
+                if round == 1 {
+                    before = ALLOCATIONS.get();
+                }
+                for frame in &frames {
+                    single.apply(frame, &mut out).unwrap();
+                    merge.push(&out).unwrap();
+                }
+                merge.finish(&mut merged);
+            }
+            assert_eq!(ALLOCATIONS.get() - before, 0, "{modulation_frequency_hz:?} {denoise:?}");
+        }
     }
 }
 

@@ -176,7 +176,7 @@ impl Demo {
         let standardizer = Standardizer::plan(&choice, Some(calibration), input.metadata().available)?;
         let output = self.folder.join("standardized").join(exhibit.scene);
         let options = standardize::WriteOptions::default();
-        standardize::standardize(&mut *input, &standardizer, Some(calibration), &output, options)?;
+        standardize::standardize(&mut *input, &standardizer, Some(calibration), &output, &options)?;
         let assessment =
             assess(&mut *input, &standardizer, Some(calibration), Pixels::Trusted, Rivals::none())?;
         console::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;

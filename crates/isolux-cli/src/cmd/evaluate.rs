@@ -13,7 +13,7 @@ use crate::console::{self, table};
 use crate::evaluation_page;
 use crate::failure::{Failure, Outcome};
 use crate::rivals::Rivals;
-use crate::{beside, frames, output};
+use crate::{beside, frames, output, sigma};
 
 pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     let inputs = [Some(args.recording.as_path()), args.calibration.as_deref()];
@@ -22,9 +22,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     }
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
-    let standardizer =
-        Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
-    standardizer.notes().iter().for_each(console::note);
+    let standardizer = sigma::plan(&args.steps, calibration.as_ref(), &mut *recording)?;
     let pixels = if args.trusted { Pixels::Trusted } else { Pixels::Valid };
     let rivals = if args.alone {
         Rivals::none()
@@ -78,15 +76,16 @@ pub(crate) fn describe_rows(comparison: &Comparison, wanted: impl Fn(&str) -> bo
     let header = ["figure", "before", "after", "better", "valid before", "valid after"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     let found: Vec<ComparisonRow> = comparison.rows().into_iter().filter(|row| wanted(&row.metric)).collect();
-    rows.extend(found.iter().filter_map(|row| Some(line(row, row.before.ok()?, row.after.ok()?))));
+    rows.extend(found.iter().filter(|row| row.is_told()).filter_map(line));
     table(&rows) + &untold(&found)
 }
 
 /// The figures that the recording does not tell, by reason; empty where it tells all.
 pub(crate) fn untold(rows: &[ComparisonRow]) -> String {
     let mut missing: Vec<(Unavailable, Vec<&str>)> = Vec::new();
-    for row in rows {
-        if let (Err(reason), _) | (_, Err(reason)) = (row.before, row.after) {
+    for row in rows.iter().filter(|row| !row.is_told()) {
+        let reason = (row.before, row.after);
+        if let (Err(Unavailable::NoSigma), Err(reason)) | (Err(reason), _) | (_, Err(reason)) = reason {
             match missing.iter_mut().find(|(known, _)| *known == reason) {
                 Some((_, metrics)) => metrics.push(&row.metric),
                 None => missing.push((reason, vec![&row.metric])),
@@ -100,17 +99,18 @@ pub(crate) fn untold(rows: &[ComparisonRow]) -> String {
     text
 }
 
-fn line(row: &ComparisonRow, before: f64, after: f64) -> Vec<String> {
+/// `None` where there is no value after.
+fn line(row: &ComparisonRow) -> Option<Vec<String>> {
     let value = |value| written(row, value);
     let share = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), |s| format!("{:.1} %", 100.0 * s));
-    vec![
+    Some(vec![
         row.metric.clone(),
-        value(before),
-        value(after),
+        row.before.map_or_else(|_| "-".to_owned(), value),
+        value(row.after.ok()?),
         direction(row.better).to_owned(),
         share(row.before_valid_fraction),
         share(row.after_valid_fraction),
-    ]
+    ])
 }
 
 /// A figure with its unit.
@@ -127,5 +127,6 @@ pub(crate) fn direction(better: Better) -> &'static str {
         Better::Lower => "lower",
         Better::Higher => "higher",
         Better::TowardsZero => "towards 0",
+        Better::TowardsNormal => "towards 68.3 %",
     }
 }

@@ -1,9 +1,10 @@
 //! Random frames, chains and calibrations.
 
-use isolux::specular::{HistogramRule, PercentRule, SigmaRule};
+use isolux::specular::{HistogramRule, KneeRule, PercentRule, SigmaRule};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::ExposureSample;
+use isolux::terms::noise::{AmplitudeNoise, IntensityNoise, Noise};
 use isolux::terms::spline::Harmonic;
 use isolux::terms::{Cubic, FitQuality, Lut, Source, Spline};
 use isolux::{
@@ -68,6 +69,7 @@ pub fn specular_steps() -> impl Strategy<Value = SpecularStep> {
         SpecularStep::Limit(SpecularRule::Sigma(SigmaRule::default())),
         SpecularStep::Limit(SpecularRule::Percent(PercentRule::default())),
         SpecularStep::Limit(SpecularRule::Percent(PercentRule::Quantile(0.9))),
+        SpecularStep::Limit(SpecularRule::Knee(KneeRule::default())),
     ])
 }
 
@@ -173,4 +175,24 @@ pub fn splines() -> impl Strategy<Value = Spline> {
 /// The values of a plane as they are stored, NaN included.
 pub fn bits(plane: &Plane<f32>) -> Vec<u32> {
     plane.values().iter().map(|value| value.to_bits()).collect()
+}
+
+pub fn noises() -> impl Strategy<Value = Noise> {
+    let by_amplitude =
+        (1e-3..1e3f64, 0.0..10.0f64, 0.0..1.0f64).prop_map(|(read, shot, ambient)| AmplitudeNoise {
+            read_variance_dn2: read,
+            shot_variance_dn2_per_dn: shot,
+            ambient_variance_dn2_per_us: ambient,
+        });
+    let by_intensity = (1e-3..1e3f64, 0.0..10.0f64)
+        .prop_map(|(read, shot)| IntensityNoise { read_variance_dn2: read, shot_variance_dn2_per_dn: shot });
+    (by_amplitude, prop::option::of(by_intensity), 0.0..1.0f64).prop_map(
+        |(by_amplitude, by_intensity, residual)| Noise {
+            version: Noise::VERSION,
+            by_amplitude,
+            by_intensity,
+            fitted_on: Vec::new(),
+            fit: FitQuality { points: 9, residual, held_out_residual: None },
+        },
+    )
 }

@@ -2,10 +2,12 @@
 
 use isolux::DenoiseRule;
 
+use super::bracket::{self, BracketCase};
 use super::chains::{self, Chain};
 use super::denoise::{self, Bars};
 use super::figure::{Aim, Figure, Unit};
 use super::held_out::{CAMERAS, HeldOut};
+use super::sigma::{self, SigmaCase};
 use super::{decay, still};
 use crate::error::PaperError;
 
@@ -23,6 +25,10 @@ pub fn simulated(progress: &mut dyn FnMut(&str)) -> Result<Vec<Figure>, PaperErr
     figures.extend(still_scenes(&cameras)?);
     progress("denoising");
     figures.extend(denoising()?);
+    progress("predicted standard deviations");
+    figures.extend(sigma(&cameras)?);
+    progress("brackets");
+    figures.extend(brackets(&cameras)?);
     Ok(figures)
 }
 
@@ -89,6 +95,67 @@ fn denoising() -> Result<Vec<Figure>, PaperError> {
         // Four standard errors of the two means.
         figures.push(Figure::new("denoise", what, leak_m, Unit::Metre, Aim::AtMost(0.005)));
     }
+    Ok(figures)
+}
+
+/// What a normal law has is 68.3 %.
+const COVERAGE: Aim = Aim::Within(0.66, 0.70);
+
+fn sigma(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
+    let plain = SigmaCase::PLAIN;
+    let cases = [
+        ("", plain, COVERAGE),
+        (", --denoise wiener", SigmaCase { denoise: Some(DenoiseRule::Wiener), ..plain }, COVERAGE),
+        (", --denoise plane", SigmaCase { denoise: Some(DenoiseRule::Plane), ..plain }, Aim::None),
+        (", modulation frequency unknown", SigmaCase { frequency: false, ..plain }, Aim::None),
+        (", no intensity recorded", SigmaCase { intensity: false, ..plain }, Aim::None),
+        (", noise estimated from the scene", SigmaCase { noise_from_scene: true, ..plain }, Aim::None),
+    ];
+    let mut figures = Vec::new();
+    for (name, case, aim) in cases {
+        let mut found = Vec::new();
+        for scene in ["office-desk", "cups"] {
+            for camera in cameras {
+                found.push(sigma::measure(camera, &SigmaCase { scene, ..case })?);
+            }
+        }
+        let what = format!("errors within 1σ at SNR ≥ 5, against the truth{name}");
+        figures.extend(both_ends(&what, "sigma", found.iter().map(|f| f.within_one_sigma), aim));
+        let ence = largest(found.iter().map(|f| f.ence));
+        figures.push(Figure::new("sigma", format!("ENCE{name}, worst"), ence, Unit::Percent, Aim::None));
+    }
+    Ok(figures)
+}
+
+/// The lowest and the highest of the cameras and scenes.
+fn both_ends(
+    what: &str,
+    subject: &'static str,
+    values: impl Iterator<Item = f64> + Clone,
+    aim: Aim,
+) -> [Figure; 2] {
+    let lowest = -largest(values.clone().map(|value| -value));
+    let figure = |end, value| Figure::new(subject, format!("{what}, {end}"), value, Unit::Percent, aim);
+    [figure("lowest", lowest), figure("highest", largest(values))]
+}
+
+fn brackets(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
+    let mut found = Vec::new();
+    for scene in ["office-desk", "cups"] {
+        for camera in cameras {
+            found.push(bracket::measure(camera, &BracketCase::of(scene))?);
+        }
+    }
+    let noise = largest(found.iter().map(|bracket| bracket.noise_of_best));
+    let what = "noise of a merged bracket of four times beside its best time, median pixel, worst";
+    let mut figures = vec![Figure::new("bracket", what, noise, Unit::Ratio, Aim::AtMost(1.0))];
+    let coverage = found.iter().map(|bracket| bracket.sigma.within_one_sigma);
+    figures.extend(both_ends("errors of merged frames within 1σ", "bracket", coverage, COVERAGE));
+    // Where there is something to fill: elsewhere what is not usable is dead in every frame.
+    let saturated = found.iter().filter(|bracket| bracket.usable_share[0] < 0.995);
+    let filled = -largest(saturated.map(|bracket| -bracket.filled_share));
+    let what = "pixels saturated at the longest time that the others fill, cups, lowest";
+    figures.push(Figure::new("bracket", what, filled, Unit::Percent, Aim::AtLeast(0.9)));
     Ok(figures)
 }
 

@@ -1,10 +1,13 @@
 //! Beyond the paper: what the terms that it does not have are worth, measured on cameras and frames that nothing was
 //! fitted or tuned on.
 
+pub mod bracket;
 pub mod chains;
 pub mod decay;
 pub mod denoise;
 pub mod figure;
 pub mod figures;
 pub mod held_out;
+mod noise_free;
+pub mod sigma;
 pub mod still;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::noise_survey::{NoiseCells, NoiseSurvey};
 use super::runs::{Place, Runs};
 use super::warning::FitWarning;
 use super::{CalibrateError, CalibrateSettings, noise_floor, single_time};
@@ -28,6 +29,7 @@ pub struct ExposureSweep {
     motion: MotionWatch,
     /// Values in the central window of the previous frame, for the noise.
     previous: Option<Vec<f64>>,
+    survey: NoiseSurvey,
 }
 
 /// Sums over the frames of one integration time.
@@ -63,6 +65,8 @@ pub struct ExposureCurve {
     pub saturated_share: Vec<f64>,
     /// Noise at the shortest time, where a run has two frames.
     pub noise_floor: Option<NoiseFloor>,
+    /// Noise at the times up to half of the largest mean amplitude.
+    pub noise: NoiseCells,
     /// What is odd about the recording.
     pub warnings: Vec<FitWarning>,
 }
@@ -81,6 +85,7 @@ impl ExposureSweep {
             pixels: Vec::new(),
             motion: MotionWatch::default(),
             previous: None,
+            survey: NoiseSurvey::new(),
         }
     }
 
@@ -97,6 +102,7 @@ impl ExposureSweep {
         let place = self.runs.push(time_us);
         if place == Place::Settling || self.settings.excludes(time_us) {
             self.previous = None;
+            self.survey.interrupt();
             return Ok(());
         }
         self.used += 1;
@@ -108,6 +114,7 @@ impl ExposureSweep {
             _ => None,
         };
         self.previous = Some(window);
+        self.survey.push(frame);
         let time = self.times.entry(time_us.to_bits()).or_default();
         time.frames.push(sums);
         time.noise_dn.extend(noise);
@@ -173,10 +180,20 @@ impl ExposureSweep {
             let mean = sums.noise_dn.iter().sum::<f64>() / sums.noise_dn.len() as f64;
             noise_floor(Some(mean), f64::from_bits(bits))
         });
+        let mut noise = self.survey.finish();
+        noise.up_to(nearly_linear_up_to(&samples));
         let frames_left_out = self.frames - self.used;
         let source = Source { recording: self.recording, frames_used: self.used, frames_left_out };
-        ExposureCurve { source, samples, saturated_share, noise_floor: floor, warnings }
+        ExposureCurve { source, samples, saturated_share, noise_floor: floor, noise, warnings }
     }
+}
+
+/// The longest time before the mean amplitude exceeds half of its largest value, µs: a full well compresses the noise
+/// with the amplitude, by less than a tenth down there.
+fn nearly_linear_up_to(samples: &[ExposureSample]) -> f64 {
+    let largest = samples.iter().map(|sample| sample.mean_amplitude_dn).fold(0.0, f64::max);
+    let below = samples.iter().take_while(|sample| sample.mean_amplitude_dn <= 0.5 * largest);
+    below.last().map_or(0.0, |sample| sample.integration_time_us)
 }
 
 impl TimeSums {

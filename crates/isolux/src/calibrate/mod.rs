@@ -2,12 +2,14 @@
 
 mod distance_sweep;
 mod exposure_sweep;
+mod noise_survey;
 mod runs;
 mod warning;
 mod window;
 
 pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
+pub use noise_survey::{NoiseCells, NoiseSurvey};
 pub use warning::FitWarning;
 
 use crate::calibration::{Calibration, NoiseFloor, Reference};
@@ -154,6 +156,9 @@ pub fn fit(
         let floors = exposure_curves.iter().filter_map(|curve| curve.noise_floor);
         calibration.noise_floor =
             floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
+        let sources = exposure_curves.iter().map(|curve| curve.source.clone()).collect();
+        let cells = NoiseCells::merged(exposure_curves.iter().map(|curve| &curve.noise));
+        calibration.terms.noise = cells.fit(sources);
     }
     if calibration.terms.lut.is_none() {
         // Nothing says what the amplitudes of another time would be.

@@ -81,32 +81,78 @@ pub(crate) struct Denoiser {
     /// NaN where a pixel takes no part.
     measured_m: Vec<f32>,
     denoised_m: Vec<f32>,
+    variance_left: Vec<f32>,
     noise: NoiseScale,
     wiener: Wiener,
     guide: plane::Guide,
 }
 
+/// A frame's distances after denoising.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Denoised<'a> {
+    /// Metres, row by row: denoised where the pixel is valid, the frame's own elsewhere.
+    pub(crate) distance_m: &'a [f32],
+    /// Share of the variance of each delivered distance that is left, 0..=1; empty where it was not asked for.
+    pub(crate) variance_left: &'a [f32],
+}
+
 impl Denoiser {
-    /// The distances to scale by, row by row: denoised where the pixel is valid, the frame's own elsewhere.
-    /// Allocates only when the shape differs from that of the last frame.
-    pub(crate) fn denoise(&mut self, rule: DenoiseRule, frame: &Frame, distance_m: &Plane<f32>) -> &[f32] {
+    /// σ_d in m of a pixel of signal-to-noise ratio 1, which falls as 1/ratio; 0 where the frame does not tell it.
+    /// `snr` holds the ratio of each pixel.
+    pub(crate) fn unit_noise_m(&mut self, frame: &Frame, distance_m: &Plane<f32>, snr: &[f32]) -> f64 {
+        self.measured_m.resize(snr.len(), f32::NAN);
+        measured(snr, distance_m.values(), frame.flags.values(), &mut self.measured_m);
+        let image = Image { shape: frame.shape(), distance_m: &self.measured_m, amplitude: snr };
+        self.noise.estimate(image).sqrt()
+    }
+
+    /// The distances to scale by, and, where `wanted`, how much of their noise is left. Allocates only when the shape
+    /// differs from that of the last frame.
+    pub(crate) fn denoise(
+        &mut self,
+        rule: DenoiseRule,
+        frame: &Frame,
+        distance_m: &Plane<f32>,
+        wanted: bool,
+    ) -> Denoised<'_> {
         let amplitude = frame.amplitude.values();
         self.measured_m.resize(amplitude.len(), f32::NAN);
         self.denoised_m.resize(amplitude.len(), f32::NAN);
         measured(amplitude, distance_m.values(), frame.flags.values(), &mut self.measured_m);
         let image = Image { shape: frame.shape(), distance_m: &self.measured_m, amplitude };
         let out = &mut self.denoised_m;
+        self.variance_left.resize(if wanted { amplitude.len() } else { 0 }, 1.0);
+        let left = wanted.then_some(self.variance_left.as_mut_slice());
         match rule {
-            DenoiseRule::Median => median::denoise(image, out),
-            DenoiseRule::Wiener => self.wiener.denoise(image, self.noise.estimate(image), out, None),
+            DenoiseRule::Median => {
+                median::denoise(image, out);
+                if let Some(left) = left {
+                    left.fill(median::VARIANCE_LEFT);
+                }
+            }
+            DenoiseRule::Wiener => {
+                let k = self.noise.estimate(image);
+                match left {
+                    Some(left) => {
+                        self.wiener.denoise(image, k, out, Some(&mut *left));
+                        left.iter_mut().for_each(|left| *left = wiener::variance_left(*left));
+                    }
+                    None => self.wiener.denoise(image, k, out, None),
+                }
+            }
             DenoiseRule::Plane => {
-                self.guide.denoise(image, self.noise.estimate(image), &mut self.wiener, out);
+                self.guide.denoise(image, self.noise.estimate(image), &mut self.wiener, out, left);
             }
             // One frame is its own mean.
-            DenoiseRule::Temporal => out.copy_from_slice(image.distance_m),
+            DenoiseRule::Temporal => {
+                out.copy_from_slice(image.distance_m);
+                if let Some(left) = left {
+                    left.fill(1.0);
+                }
+            }
         }
         keep_the_rest(out, distance_m.values());
-        out
+        Denoised { distance_m: out, variance_left: &self.variance_left }
     }
 }
 

@@ -67,6 +67,22 @@ impl TemporalMean {
         Ok(())
     }
 
+    /// Writes the share of the variance of the newest frame's distances that the mean leaves, `a² / Σa²`.
+    pub fn variance_left(&self, out: &mut Plane<f32>) {
+        out.reshape(self.shape, 1.0);
+        let first = self.next + Self::FRAMES - self.count;
+        let newest = &self.frames[(first + self.count.max(1) - 1) % Self::FRAMES];
+        for (index, out) in out.values_mut().iter_mut().enumerate() {
+            let weight = |[distance_m, amplitude]: &[Vec<f32>; 2]| {
+                let amplitude = f64::from(amplitude[index]);
+                if distance_m[index].is_nan() { 0.0 } else { amplitude * amplitude }
+            };
+            let ages = (0..self.count).map(|age| &self.frames[(first + age) % Self::FRAMES]);
+            let left = weight(newest) / ages.map(weight).sum::<f64>();
+            *out = if left > 0.0 { left as f32 } else { 1.0 };
+        }
+    }
+
     /// From the oldest frame to the newest, so that the mean depends on these frames alone, bit by bit.
     fn mean(&self, delivered_m: &[f32], out: &mut [f32]) {
         let first = self.next + Self::FRAMES - self.count;

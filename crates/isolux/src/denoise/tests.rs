@@ -33,7 +33,7 @@ fn frames() -> impl Strategy<Value = Frame> {
 }
 
 fn denoise(rule: DenoiseRule, frame: &Frame) -> Vec<f32> {
-    Denoiser::default().denoise(rule, frame, frame.distance_m.as_ref().unwrap()).to_vec()
+    Denoiser::default().denoise(rule, frame, frame.distance_m.as_ref().unwrap(), false).distance_m.to_vec()
 }
 
 fn distances(frame: &Frame) -> &[f32] {
@@ -335,7 +335,8 @@ fn images_of_any_size_and_frames_one_after_the_other() {
         let distance = (0..shape.pixels()).map(|i| 1.0 + 0.01 * ((i * 7919) % 13) as f32).collect();
         let frame = frame(shape, vec![50.0; shape.pixels()], distance);
         for rule in SPATIAL {
-            let found = denoiser.denoise(rule, &frame, frame.distance_m.as_ref().unwrap()).to_vec();
+            let found =
+                denoiser.denoise(rule, &frame, frame.distance_m.as_ref().unwrap(), false).distance_m.to_vec();
             assert_eq!(bits(&found), bits(&denoise(rule, &frame)), "{rule:?} {shape}");
             assert!(found.iter().all(|d| (1.0..=1.13).contains(d)), "{rule:?} {shape} {found:?}");
         }

@@ -14,6 +14,9 @@ pub struct Comparison {
     /// Relative noise after / before, dimensionless: 1 where the steps add no noise.
     #[serde(serialize_with = "crate::refusal::serialize")]
     pub noise_amplification: Outcome<f64>,
+    /// Borders between the strata, where the signal-to-noise ratio is known.
+    #[serde(skip)]
+    snr_edges: Vec<f64>,
 }
 
 /// Where a figure should go.
@@ -26,6 +29,8 @@ pub enum Better {
     Higher,
     /// Nearer to 0 is better.
     TowardsZero,
+    /// Nearer to 0.683 is better, the share of normal errors within one standard deviation.
+    TowardsNormal,
 }
 
 /// One line of a table of figures.
@@ -49,6 +54,14 @@ pub struct ComparisonRow {
     pub after_valid_fraction: Option<f64>,
 }
 
+impl ComparisonRow {
+    /// True where there is a figure to show: after, and before too, unless only predicted standard deviations have it.
+    #[must_use]
+    pub fn is_told(&self) -> bool {
+        self.after.is_ok() && (self.before.is_ok() || self.before == Err(Unavailable::NoSigma))
+    }
+}
+
 /// A figure and its valid fraction.
 type Figure = Outcome<(f64, f64)>;
 
@@ -58,10 +71,11 @@ impl Comparison {
     #[must_use]
     pub fn new(before: &Evaluator, after: &Evaluator) -> Self {
         let snr = before.signal_to_noise();
+        let snr_edges = before.settings.snr_edges.iter().copied().filter(|_| snr.is_ok()).collect();
         let before = before.finish_stratified(&snr);
         let after = after.finish_stratified(&snr);
         let noise_amplification = noise_amplification(&before, &after);
-        Self { before, after, noise_amplification }
+        Self { before, after, noise_amplification, snr_edges }
     }
 
     /// All figures in a fixed order, for a table.
@@ -104,7 +118,14 @@ impl Comparison {
                 e.noise.map(|noise| (noise.relative, noise.valid_fraction))
             }),
             self.noise_amplification_row(),
+            self.row("errors within one predicted sigma", "ratio", Better::TowardsNormal, |e| {
+                e.sigma_coverage.map(|coverage| (coverage.within_one_sigma, coverage.valid_fraction))
+            }),
         ]);
+        rows.extend(self.coverage_rows());
+        rows.push(self.row("calibration error of sigma (ENCE)", "ratio", Lower, |e| {
+            e.sigma_coverage.map(|coverage| (coverage.ence, coverage.valid_fraction))
+        }));
         rows
     }
 
@@ -151,6 +172,25 @@ impl Comparison {
         names.enumerate().map(row).collect()
     }
 
+    /// One line a stratum, whether there is a σ or not: comparisons with one raw amplitude have the same lines. No line
+    /// where no pixel's ratio is known.
+    fn coverage_rows(&self) -> Vec<ComparisonRow> {
+        let from = [0.0].into_iter().chain(self.snr_edges.iter().copied());
+        let to = self.snr_edges.iter().copied().map(Some).chain([None]);
+        let row = |(index, (from, to)): (usize, (f64, Option<f64>))| {
+            let range = range_name(from, to);
+            let name = format!("errors within one predicted sigma, SNR {range}");
+            self.row(&name, "ratio", Better::TowardsNormal, |evaluation| {
+                let strata = evaluation.sigma_coverage_by_snr.as_ref().map_err(|reason| *reason)?;
+                let stratum = strata.get(index).ok_or(Unavailable::NoValidPixels)?;
+                let values = evaluation.frames * evaluation.pixels_per_frame as u64;
+                let share = stratum.within_one_sigma.ok_or(Unavailable::NoValidPixels)?;
+                Ok((share, super::fraction(stratum.errors, values)))
+            })
+        };
+        if self.snr_edges.is_empty() { Vec::new() } else { from.zip(to).enumerate().map(row).collect() }
+    }
+
     fn noise_amplification_row(&self) -> ComparisonRow {
         let mut row = self.row("noise amplification", "ratio", Better::Lower, |evaluation| {
             evaluation.noise.map(|noise| (1.0, noise.valid_fraction))
@@ -161,13 +201,15 @@ impl Comparison {
 }
 
 fn stratum_name(stratum: &SnrStratum) -> String {
-    let from = stratum.snr_from;
-    let range = match stratum.snr_to {
+    format!("pixel CV over integration times, median, SNR {}", range_name(stratum.snr_from, stratum.snr_to))
+}
+
+fn range_name(from: f64, to: Option<f64>) -> String {
+    match to {
         Some(to) if from == 0.0 => format!("below {to}"),
         Some(to) => format!("{from} to {to}"),
         None => format!("{from} and above"),
-    };
-    format!("pixel CV over integration times, median, SNR {range}")
+    }
 }
 
 fn noise_amplification(before: &Evaluation, after: &Evaluation) -> Outcome<f64> {

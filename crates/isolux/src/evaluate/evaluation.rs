@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    DistanceSlope, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv, SnrStratum, ThresholdIou,
+    CoverageStratum, DistanceSlope, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv,
+    SigmaCoverage, SnrStratum, ThresholdIou,
 };
 
 /// What an [`Evaluator`](super::Evaluator) found; each figure, or why the recording does not determine it.
@@ -41,4 +42,10 @@ pub struct Evaluation {
     /// Relative noise of a single frame.
     #[serde(serialize_with = "crate::refusal::serialize")]
     pub noise: Outcome<Noise>,
+    /// Predicted standard deviations beside the differences between frames of one integration time.
+    #[serde(serialize_with = "crate::refusal::serialize")]
+    pub sigma_coverage: Outcome<SigmaCoverage>,
+    /// The same, by the raw amplitude's signal-to-noise ratio.
+    #[serde(serialize_with = "crate::refusal::serialize")]
+    pub sigma_coverage_by_snr: Outcome<Vec<CoverageStratum>>,
 }

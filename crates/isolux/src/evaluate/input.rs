@@ -20,6 +20,8 @@ pub struct EvaluationFrame<'a> {
     pub integration_time_us: &'a IntegrationTime,
     /// Labels: equal labels > 0 are one material, 0 is unused.
     pub target: Option<&'a Plane<u8>>,
+    /// Predicted standard deviation of each value, DN.
+    pub sigma: Option<&'a Plane<f32>>,
 }
 
 impl<'a> EvaluationFrame<'a> {
@@ -38,7 +40,14 @@ impl<'a> EvaluationFrame<'a> {
             distance_m: frame.distance_m.as_ref(),
             integration_time_us: &frame.integration_time_us,
             target: frame.target.as_ref(),
+            sigma: None,
         }
+    }
+
+    /// With the predicted standard deviation of each value, DN.
+    #[must_use]
+    pub fn with_sigma(self, sigma: Option<&'a Plane<f32>>) -> Self {
+        Self { sigma, ..self }
     }
 
     pub(super) fn check_shapes(&self, shape: Shape) -> Result<(), ShapeError> {
@@ -46,6 +55,7 @@ impl<'a> EvaluationFrame<'a> {
         self.flags.expect_shape("flags", shape)?;
         self.distance_m.map_or(Ok(()), |plane| plane.expect_shape("distance", shape))?;
         self.target.map_or(Ok(()), |plane| plane.expect_shape("target", shape))?;
+        self.sigma.map_or(Ok(()), |plane| plane.expect_shape("sigma", shape))?;
         match self.integration_time_us {
             IntegrationTime::PerPixel(map) => map.expect_shape("integration_time_us", shape),
             IntegrationTime::Unknown | IntegrationTime::PerFrame(_) => Ok(()),
@@ -171,6 +181,7 @@ mod tests {
             distance_m: None,
             integration_time_us: &IntegrationTime::Unknown,
             target: None,
+            sigma: None,
         };
         let mut out = [0.0; 6];
         assert_eq!(frame.usable_into(&mut out), 1);

@@ -60,6 +60,7 @@ mod pixel_cv;
 mod reference;
 mod runs;
 mod settings;
+mod sigma;
 mod slope;
 mod tally;
 #[cfg(test)]
@@ -76,6 +77,7 @@ pub use otsu::OtsuShift;
 pub use outcome::{Outcome, Unavailable};
 pub use pixel_cv::{PixelCv, SnrStratum};
 pub use settings::EvaluationSettings;
+pub use sigma::{CoverageStratum, SigmaCoverage, SigmaTally};
 pub use slope::DistanceSlope;
 pub use threshold::ThresholdIou;
 
@@ -84,6 +86,7 @@ use noise::NoiseMeter;
 use pixel_cv::PixelRuns;
 use reference::ReferenceComparison;
 use runs::TimesSeen;
+use sigma::CoverageMeter;
 use slope::SlopeSample;
 
 /// Takes frames one by one and comes to an [`Evaluation`]. Memory does not grow with the number of frames.
@@ -97,6 +100,7 @@ pub struct Evaluator {
     times: TimesSeen,
     pixel_runs: PixelRuns,
     noise: NoiseMeter,
+    coverage: Option<CoverageMeter>,
     slope: SlopeSample,
     reference: Option<ReferenceComparison>,
 }
@@ -114,6 +118,7 @@ impl Evaluator {
             times: TimesSeen::new(),
             pixel_runs: PixelRuns::new(pixels, settings.same_time_ratio),
             noise: NoiseMeter::new(shape, settings.same_time_ratio),
+            coverage: None,
             slope: SlopeSample::new(settings.sample_capacity()),
             reference: None,
             settings,
@@ -147,6 +152,10 @@ impl Evaluator {
         self.pixel_runs.push(&self.usable, times);
         self.noise.push(&self.usable, times);
         self.slope.push(&self.usable, frame, times);
+        if let Some(sigma) = frame.sigma {
+            let new = || CoverageMeter::new(self.shape.pixels(), self.settings.same_time_ratio);
+            self.coverage.get_or_insert_with(new).push(&self.usable, sigma, frame.flags, times);
+        }
         if let (Some(reference), Some(time_us)) = (&mut self.reference, times.of_frame()) {
             reference.push(&self.usable, time_us, self.settings.same_time_ratio);
         }
@@ -185,6 +194,11 @@ impl Evaluator {
             otsu_shift: compared.and_then(ReferenceComparison::otsu_shift),
             histogram_distance: compared.and_then(ReferenceComparison::histogram_distance),
             noise: self.require_valid().and_then(|()| self.noise.finish()),
+            sigma_coverage: self.require_valid().and_then(|()| self.coverage()?.finish(self.values())),
+            sigma_coverage_by_snr: self.coverage().and_then(|coverage| {
+                let snr = snr.as_ref().map_err(|reason| *reason)?;
+                Ok(coverage.strata(snr, &self.settings.snr_edges))
+            }),
         }
     }
 
@@ -198,6 +212,10 @@ impl Evaluator {
         self.require_valid()?;
         self.times.require_variation_of_frames(self.settings.same_time_ratio)?;
         self.reference.as_ref().ok_or(Unavailable::NoReference)
+    }
+
+    fn coverage(&self) -> Outcome<&CoverageMeter> {
+        self.coverage.as_ref().ok_or(Unavailable::NoSigma)
     }
 
     fn require_frames(&self) -> Outcome<()> {

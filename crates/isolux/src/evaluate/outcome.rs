@@ -72,6 +72,11 @@ pub enum Unavailable {
     /// The noise to be compared with is 0: simulated without noise, or hidden by the quantization.
     #[error("no noise is visible before, so none can be compared")]
     NoiseIsZero,
+    /// No standard deviations were predicted.
+    #[error(
+        "no standard deviation was predicted: the noise of the amplitude is not known, or this is the raw amplitude"
+    )]
+    NoSigma,
     /// One estimate is temporal, the other spatial.
     #[error("the noise before and after was estimated by different methods")]
     NoiseMethodsDiffer,

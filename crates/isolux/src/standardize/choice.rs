@@ -2,6 +2,7 @@
 
 use crate::denoise::DenoiseRule;
 use crate::specular::SpecularRule;
+use crate::terms::NoiseModel;
 
 /// Which terms to use where no single step says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,6 +61,19 @@ pub enum SpecularStep {
     None,
 }
 
+/// Whether the standard deviation of each value is predicted. Where it is, the bias that the noise of the distance
+/// brings is taken off the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SigmaStep {
+    /// It is an error when the noise is not known.
+    Required,
+    /// Where the choice or the calibration knows the noise.
+    WhereKnown,
+    /// Not at all.
+    #[default]
+    None,
+}
+
 /// A method, and the steps that override it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Choice {
@@ -75,4 +89,11 @@ pub struct Choice {
     pub specular: Option<SpecularStep>,
     /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
     pub low_signal_below_dn: Option<f32>,
+    /// Prediction of the standard deviation.
+    pub sigma: SigmaStep,
+    /// Noise of the amplitude, for the prediction; otherwise the calibration's.
+    pub noise: Option<NoiseModel>,
+    /// Modulation frequency of the recording, Hz, for the prediction; otherwise the noise of the distances is
+    /// estimated from each frame.
+    pub modulation_frequency_hz: Option<f64>,
 }

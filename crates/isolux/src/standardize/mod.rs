@@ -2,11 +2,14 @@
 
 mod choice;
 mod kernel;
+mod merge;
 mod plan;
 mod report;
+mod sigma;
 mod time;
 
-pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
+pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SigmaStep, SpecularStep, TimeStep};
+pub use merge::{BracketMerge, MergeError};
 pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
@@ -19,7 +22,11 @@ use crate::specular::SpecularRule;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
 use plan::Plan;
+use sigma::Predictor;
 use time::TimeGain;
+
+/// Distances to scale by in place of the frame's own, and the share of their variance that is left.
+type Denoised<'a> = (&'a Plane<f32>, Option<&'a Plane<f32>>);
 
 /// A chain of corrections, ready to apply to any frame of a recording. Shareable between threads.
 #[derive(Clone, Debug)]
@@ -34,6 +41,9 @@ pub struct Standardized {
     pub amplitude: Plane<f32>,
     /// The frame's flags, with those of the correction.
     pub flags: Plane<PixelFlags>,
+    /// Predicted standard deviation of each amplitude before highlights were limited, DN; NaN where INVALID is
+    /// flagged or the noise is unknown. `None` where the plan predicts none.
+    pub sigma: Option<Plane<f32>>,
     quantiles: PositiveQuantiles,
     denoiser: Denoiser,
 }
@@ -88,6 +98,7 @@ impl Standardized {
         Self {
             amplitude: Plane::filled(shape, f32::NAN),
             flags: Plane::filled(shape, PixelFlags::empty()),
+            sigma: None,
             quantiles: PositiveQuantiles::new(),
             denoiser: Denoiser::default(),
         }
@@ -140,7 +151,7 @@ impl Standardizer {
         let mut needed = Channels::AMPLITUDE;
         needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
         needed.set(Channels::DISTANCE, self.plan.distance.is_some());
-        needed
+        needed | self.plan.sigma.map_or(Channels::empty(), |sigma| sigma.needed)
     }
 
     /// Standardizes one frame into `out`; the frame itself stays as it is. Allocates only when the shape differs
@@ -163,7 +174,7 @@ impl Standardizer {
     }
 
     /// Like [`Self::apply`], but scales by `distance_m` (metres) in place of the frame's own distance, and denoises
-    /// nothing more.
+    /// nothing more. Predictions take it to be as noisy as the frame's own.
     ///
     /// # Errors
     /// [`StandardizeError`] when the frame lacks what the plan needs, or the planes differ in shape.
@@ -174,20 +185,46 @@ impl Standardizer {
         out: &mut Standardized,
     ) -> Result<FrameSummary, StandardizeError> {
         distance_m.expect_shape("distance", frame.shape())?;
-        self.correct(frame, Some(distance_m), out)
+        self.correct(frame, Some((distance_m, None)), out)
+    }
+
+    /// Like [`Self::apply_at`]; `variance_left` is the share, 0..=1, of the variance of the frame's own distance that
+    /// each has, as [`TemporalMean::variance_left`] tells it.
+    ///
+    /// # Errors
+    /// [`StandardizeError`] when the frame lacks what the plan needs, or the planes differ in shape.
+    pub fn apply_denoised(
+        &self,
+        frame: &Frame,
+        distance_m: &Plane<f32>,
+        variance_left: &Plane<f32>,
+        out: &mut Standardized,
+    ) -> Result<FrameSummary, StandardizeError> {
+        distance_m.expect_shape("distance", frame.shape())?;
+        variance_left.expect_shape("variance_left", frame.shape())?;
+        self.correct(frame, Some((distance_m, Some(variance_left))), out)
+    }
+
+    /// True where [`Standardized::sigma`] is predicted.
+    #[must_use]
+    pub fn predicts_sigma(&self) -> bool {
+        self.plan.sigma.is_some()
     }
 
     fn correct(
         &self,
         frame: &Frame,
-        distance_m: Option<&Plane<f32>>,
+        denoised: Option<Denoised<'_>>,
         out: &mut Standardized,
     ) -> Result<FrameSummary, StandardizeError> {
         frame.check_shapes()?;
         out.reshape(frame.shape());
+        if self.plan.sigma.is_none() {
+            out.sigma = None;
+        }
         out.flags.values_mut().copy_from_slice(frame.flags.values());
         let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
-        self.scale(frame, distance_m, time.gain, out)?;
+        self.scale(frame, denoised, time.gain, out)?;
         let specular_cutoff = self.plan.specular.and_then(|rule| out.limit(rule));
         Ok(FrameSummary {
             specular_cutoff,
@@ -201,21 +238,35 @@ impl Standardizer {
     fn scale(
         &self,
         frame: &Frame,
-        distance_m: Option<&Plane<f32>>,
+        denoised: Option<Denoised<'_>>,
         gain: TimeGain,
         out: &mut Standardized,
     ) -> Result<(), StandardizeError> {
         const ONES: [f32; BLOCK] = [1.0; BLOCK];
         let law = self.plan.distance.unwrap_or(DistanceGain::ONE);
-        let distances =
-            match (&self.plan.distance, distance_m.or(frame.distance_m.as_ref()), self.plan.denoise) {
-                (None, ..) => None,
-                (Some(_), None, _) => return Err(StandardizeError::DistanceMissing),
-                (Some(_), Some(delivered), Some(rule)) if distance_m.is_none() => {
-                    Some(out.denoiser.denoise(rule, frame, delivered))
-                }
-                (Some(_), Some(distances), _) => Some(distances.values()),
-            };
+        let table = self.plan.distance_table.as_ref();
+        let mut predictor = self.plan.sigma.as_ref().map(|plan| {
+            let law = self.plan.distance.as_ref().map(|law| (law, table));
+            let scratch = sigma::plane(&mut out.sigma, frame.shape()).values_mut();
+            Predictor::new(plan, frame, law, &mut out.denoiser, scratch)
+        });
+        let distances = match (&self.plan.distance, denoised, &frame.distance_m, self.plan.denoise) {
+            (None, ..) => None,
+            (Some(_), Some((distance_m, left)), ..) => {
+                predictor =
+                    predictor.zip(left).map(|(p, left)| p.after_denoising(left.values())).or(predictor);
+                Some(distance_m.values())
+            }
+            (Some(_), None, None, _) => return Err(StandardizeError::DistanceMissing),
+            (Some(_), None, Some(delivered), None) => Some(delivered.values()),
+            (Some(_), None, Some(delivered), Some(rule)) => {
+                let denoised = out.denoiser.denoise(rule, frame, delivered, predictor.is_some());
+                predictor = predictor.map(|p| p.after_denoising(denoised.variance_left));
+                Some(denoised.distance_m)
+            }
+        };
+        let sigma = predictor.as_ref().and(out.sigma.as_mut());
+        let mut sigma = sigma.map(|plane| plane.values_mut().chunks_mut(BLOCK));
         let mut gains = [1.0; BLOCK];
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
@@ -229,7 +280,7 @@ impl Standardizer {
                 gains[..count].copy_from_slice(values);
             }
             let distance_m = distances.map_or(&ONES[..count], |distances| &distances[start..start + count]);
-            if let Some(table) = &self.plan.distance_table {
+            if let Some(table) = table {
                 if let TimeGain::Uniform(gain) = gain {
                     gains[..count].fill(gain);
                 }
@@ -237,6 +288,9 @@ impl Standardizer {
             }
             let block = Block { amplitude, distance_m, time_gain: &gains[..count] };
             kernel::pointwise(block, &law, self.plan.low_signal_below_dn, values, flags);
+            if let (Some(predictor), Some(sigma)) = (&predictor, sigma.as_mut().and_then(Iterator::next)) {
+                predictor.predict(start, distance_m, values, sigma);
+            }
         }
         Ok(())
     }

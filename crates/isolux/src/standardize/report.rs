@@ -5,7 +5,7 @@ use std::fmt;
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppliedStep {
-    /// Which effect it takes out: `time`, `denoise`, `distance` or `specular`.
+    /// Which effect it takes out: `time`, `denoise`, `distance` or `specular`; `sigma` predicts what is left.
     pub effect: &'static str,
     /// Name of the term.
     pub term: &'static str,
@@ -38,6 +38,8 @@ pub enum Note {
     },
     /// The distance is to be denoised, but no step scales by it.
     NothingToDenoise,
+    /// The noise of the distance cannot be computed from that of the amplitude.
+    FrequencyUnknown,
 }
 
 impl fmt::Display for Note {
@@ -54,6 +56,10 @@ impl fmt::Display for Note {
             Self::ChannelMissing { effect, channel } => {
                 write!(f, "the recording has no {channel}: the {effect} step is left out")
             }
+            Self::FrequencyUnknown => f.write_str(
+                "the recording does not name its modulation frequency: sigma takes the noise of the distance from \
+                 each frame's own scatter",
+            ),
             Self::NothingToDenoise => f.write_str(
                 "no step scales by the distance: there is nothing to denoise, and this step is left out",
             ),
@@ -85,6 +91,12 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
+    /// A prediction of the standard deviation without the noise of the amplitude.
+    #[error(
+        "`sigma` was asked for, but the noise of the amplitude is not known: give it (--read-noise-dn, \
+         --shot-noise-dn2-per-dn), or fit it with `isolux calibrate --exposure-sweep REC`, several frames at each time"
+    )]
+    NoiseUnknown,
     /// The calibration's own values are impossible.
     #[error("calibration: {0}")]
     Calibration(#[from] crate::terms::ParameterError),

@@ -5,6 +5,7 @@ pub mod cubic;
 pub mod eq5;
 pub mod linear;
 pub mod lut;
+pub mod noise;
 pub mod spline;
 pub mod square;
 
@@ -13,6 +14,7 @@ mod table;
 
 pub use cubic::Cubic;
 pub use lut::Lut;
+pub use noise::{Noise, NoiseModel};
 pub use polynomial::DistanceGain;
 pub use spline::Spline;
 pub use table::DistanceTable;

@@ -36,6 +36,20 @@ impl DistanceGain {
         }
     }
 
+    /// The multiplier at one distance (m), its slope (per m) and its curvature (per m²); NaN for NaN. At the ends of
+    /// the range those of the inside.
+    #[inline(always)]
+    #[must_use]
+    pub fn derivatives(&self, distance_m: f32) -> [f32; 3] {
+        let [_, c1, c2, c3] = self.coefficients;
+        let value = self.at(distance_m);
+        let outside = (distance_m < self.min_m) | (distance_m > self.max_m);
+        let beyond = 2.0 * value / distance_m;
+        let slope = (3.0 * c3 * distance_m + 2.0 * c2) * distance_m + c1;
+        let curvature = 6.0 * c3 * distance_m + 2.0 * c2;
+        [value, if outside { beyond } else { slope }, if outside { beyond / distance_m } else { curvature }]
+    }
+
     /// The multiplier at one distance (m); NaN for NaN.
     #[inline(always)]
     #[must_use]
@@ -111,6 +125,26 @@ mod tests {
             assert!((gain.at(outside) / expected - 1.0).abs() <= 4.0 * f32::EPSILON);
         }
         assert!(gain.at(f32::NAN).is_nan());
+    }
+
+    #[test]
+    fn slope_and_curvature_are_those_of_the_multiplier() {
+        let gain = DistanceGain::between([0.3, 0.5, 0.4, 0.1], 0.8, 1.5);
+        for distance_m in [0.4f32, 0.9, 1.4, 3.0] {
+            // Central differences; f32 keeps 1e-7 of the value, which a step of 0.03 turns into 1e-5 and 4e-4, and
+            // the third derivative, 0.6, adds 0.6 h²/6.
+            let h = 0.03f32;
+            let [below, at, above] =
+                [distance_m - h, distance_m, distance_m + h].map(|d| f64::from(gain.at(d)));
+            let h = f64::from(h);
+            let [value, slope, curvature] = gain.derivatives(distance_m).map(f64::from);
+            assert_eq!(value, at);
+            assert!((slope - (above - below) / (2.0 * h)).abs() < 3e-4, "{distance_m}: {slope}");
+            assert!(
+                (curvature - (above - 2.0 * at + below) / (h * h)).abs() < 5e-3,
+                "{distance_m}: {curvature}"
+            );
+        }
     }
 
     #[test]

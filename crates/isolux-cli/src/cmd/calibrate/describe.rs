@@ -37,6 +37,18 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
             floor.amplitude_sd_dn, floor.integration_time_us, floor.low_signal_below_dn
         ));
     }
+    if let Some(noise) = &calibration.terms.noise {
+        text.push(format!("\nnoise, variance of the amplitude: {}", quality(&noise.fit, "groups of pixels")));
+        let by = noise.by_amplitude;
+        text.push(format!(
+            "{:.3} DN² + {:.4} DN² per DN of amplitude + {:.3e} DN² per µs",
+            by.read_variance_dn2, by.shot_variance_dn2_per_dn, by.ambient_variance_dn2_per_us
+        ));
+        if let Some(by) = noise.by_intensity {
+            let (read, shot) = (by.read_variance_dn2, by.shot_variance_dn2_per_dn);
+            text.push(format!("with intensity: {read:.3} DN² + {shot:.4} DN² per DN of intensity"));
+        }
+    }
     text.join("\n")
 }
 

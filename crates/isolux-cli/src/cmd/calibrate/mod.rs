@@ -130,7 +130,7 @@ fn measure(
 ) -> Outcome {
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::INTENSITY;
     frames::for_each(&mut *recording, wanted, what, |_, frame| {
         push(frame).map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
     })

@@ -210,7 +210,7 @@ fn rows_list_every_figure_with_its_valid_fraction() {
     let before = sweep(&[1000.0, 2000.0, 8000.0], 5, 0.05);
     let comparison = Comparison::new(&evaluator(&before, Some(9)), &evaluator(&before, Some(9)));
     let rows = comparison.rows();
-    assert_eq!(rows.len(), 15);
+    assert_eq!(rows.len(), 21);
     for row in &rows {
         assert_eq!(row.before, row.after, "{}", row.metric);
         assert_eq!(row.before.is_ok(), row.before_valid_fraction.is_some(), "{}", row.metric);

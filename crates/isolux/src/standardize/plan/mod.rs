@@ -2,6 +2,7 @@
 
 mod denoise;
 mod distance;
+mod sigma;
 mod specular;
 mod time;
 
@@ -12,6 +13,8 @@ use crate::denoise::DenoiseRule;
 use crate::frame::Channels;
 use crate::specular::SpecularRule;
 use crate::terms::{DistanceGain, DistanceTable, Lut};
+
+pub(in crate::standardize) use sigma::SigmaPlan;
 
 /// The integration-time step, ready to apply.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +35,8 @@ pub(in crate::standardize) struct Plan {
     /// A factor on that law, for laws that are no polynomial.
     pub(in crate::standardize) distance_table: Option<DistanceTable>,
     pub(in crate::standardize) specular: Option<SpecularRule>,
+    /// `None` predicts no standard deviation.
+    pub(in crate::standardize) sigma: Option<SigmaPlan>,
     pub(in crate::standardize) low_signal_below_dn: f32,
     pub(in crate::standardize) steps: Vec<AppliedStep>,
     pub(in crate::standardize) notes: Vec<Note>,
@@ -59,6 +64,7 @@ impl Plan {
         }
         let denoise = planner.denoise(distance.is_some());
         let specular = planner.specular();
+        let sigma = planner.sigma(distance.is_some())?;
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
         Ok(Self {
             time,
@@ -66,6 +72,7 @@ impl Plan {
             distance,
             distance_table: distance_table.flatten(),
             specular,
+            sigma,
             low_signal_below_dn: choice.low_signal_below_dn.or(floor).unwrap_or(0.0),
             steps: planner.steps,
             notes: planner.notes,

@@ -1,37 +1,48 @@
 //! `isolux standardize`: a recording in, a standardized recording out.
 
+mod brackets;
+
 use std::path::Path;
 
-use isolux::standardize::FrameSummary;
+use isolux::standardize::{AppliedStep, BracketMerge, FrameSummary};
 use isolux::{Calibration, Frame, PixelFlags, Reference, Standardized, Standardizer};
 use isolux_io::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use self::brackets::Merging;
 use crate::args::StandardizeArgs;
 use crate::chain::{self, Chain, Smoothed};
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::{frames, interrupt, output};
+use crate::{frames, interrupt, output, sigma};
+
+pub(crate) use self::brackets::Brackets;
 
 /// Name of the output's main channel.
 const VALUES: &str = "standardized_amplitude";
 /// Name of its flags.
 const FLAGS: &str = "flags";
+/// Name of their predicted standard deviation.
+const SIGMA: &str = "sigma";
 
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
 /// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch; up
 /// to four planes of the denoising rules.
 const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4;
+/// Intensity, result, and what denoising leaves of the distance's noise.
+const SIGMA_BYTES_PER_PIXEL: usize = 4 + 4 + 4;
 
 /// What to write besides the two channels, and how.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct WriteOptions {
     pub(crate) keep_input: bool,
     pub(crate) overwrite: bool,
     pub(crate) threads: Option<u16>,
+    /// Frames that are merged into one; none keeps each.
+    pub(crate) brackets: Option<Brackets>,
 }
 
 /// Totals over all frames.
@@ -53,15 +64,17 @@ pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     output::keep_clear_of(&args.output, inputs.into_iter().flatten())?;
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
-    let standardizer =
-        Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
-    standardizer.notes().iter().for_each(console::note);
-    let options = WriteOptions { keep_input: args.keep_input, overwrite: args.force, threads: args.threads };
-    let summary = standardize(&mut *recording, &standardizer, calibration.as_ref(), &args.output, options)?;
+    let standardizer = sigma::plan(&args.steps, calibration.as_ref(), &mut *recording)?;
+    let brackets = args.merge_bracket.map(|length| Brackets::plan(&mut *recording, length)).transpose()?;
+    let (keep_input, overwrite, threads) = (args.keep_input, args.force, args.threads);
+    let options = WriteOptions { keep_input, overwrite, threads, brackets };
+    let summary = standardize(&mut *recording, &standardizer, calibration.as_ref(), &args.output, &options)?;
+    let steps = steps(&standardizer, options.brackets.as_ref());
     if args.json {
-        return console::print_json(&json!({"steps": steps(&standardizer), "summary": summary}));
+        let steps: Vec<Value> = steps.iter().map(step_json).collect();
+        return console::print_json(&json!({"steps": steps, "summary": summary}));
     }
-    for step in standardizer.steps() {
+    for step in steps {
         console::print(format!("{:>9}: {} ({})", step.effect, step.term, step.parameters))?;
     }
     console::print(describe(&summary))?;
@@ -74,7 +87,7 @@ pub(crate) fn standardize(
     standardizer: &Standardizer,
     calibration: Option<&Calibration>,
     output: &Path,
-    options: WriteOptions,
+    options: &WriteOptions,
 ) -> Outcome<Summary> {
     interrupt::watch();
     let metadata = recording.metadata().clone();
@@ -83,15 +96,29 @@ pub(crate) fn standardize(
         ChannelSpec::image(VALUES, ElementType::F32, metadata.shape),
         ChannelSpec::image(FLAGS, ElementType::U16, metadata.shape),
     ];
+    if standardizer.predicts_sigma() {
+        channels.push(ChannelSpec::image(SIGMA, ElementType::F32, metadata.shape));
+    }
     channels.extend(kept.iter().filter_map(|name| metadata.channel(name)).map(ChannelSpec::copy_of));
-    let mut writer = RecordingWriter::create(output, metadata.frame_count, channels, options.overwrite)?;
+    let mut merging = match &options.brackets {
+        Some(brackets) => Some(Merging::start(standardizer, brackets)?),
+        None => None,
+    };
+    let planned = standardizer;
+    let (standardizer, mut merging) = match &mut merging {
+        Some((frames, merging)) => (&*frames, Some(merging)),
+        None => (standardizer, None),
+    };
+    let frame_count =
+        options.brackets.as_ref().map_or(metadata.frame_count, |brackets| brackets.lengths.len());
+    let mut writer = RecordingWriter::create(output, frame_count, channels, options.overwrite)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))
         .build()
         .map_err(|error| Failure::data(format!("cannot start threads: {error}")))?;
     // Reading and writing go frame by frame and in order; only the arithmetic between is shared out.
     let mut chain = Chain::new(standardizer);
-    let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept, &chain));
+    let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept, &chain, merging.is_some()));
     let mut batch: Vec<Slot> = (0..slots).map(|_| Slot::new(&metadata, kept.len(), &chain)).collect();
     let mut summary = Summary::default();
     let progress = console::progress("standardizing", metadata.frame_count);
@@ -111,9 +138,19 @@ pub(crate) fn standardize(
         pool.install(|| batch[..count].par_iter_mut().for_each(|slot| slot.apply(standardizer)));
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
             let index = start + offset;
-            summary.add(slot.take(&metadata.path, index)?);
-            writer.push(VALUES, slot.out.amplitude.values())?;
-            writer.push(FLAGS, slot.out.flags.values())?;
+            let taken = slot.take(&metadata.path, index)?;
+            match &mut merging {
+                None => {
+                    summary.add(taken);
+                    write(&mut writer, &slot.out)?;
+                }
+                Some(merging) => {
+                    if let Some(merged) = merging.push(&slot.out)? {
+                        summary.add(merged);
+                        write(&mut writer, &merging.out)?;
+                    }
+                }
+            }
             for (name, bytes) in kept.iter().zip(&slot.kept) {
                 writer.push_bytes(name, bytes)?;
             }
@@ -126,17 +163,34 @@ pub(crate) fn standardize(
                        it expected: record within it, calibrate further, or use --time linear";
         return Err(Failure::data(format!("`{}`: {message}", metadata.path.display())));
     }
-    writer.finish(&record(&metadata.info, &metadata.path, standardizer, calibration))?;
+    let steps = steps(planned, options.brackets.as_ref());
+    let mut info = record(&metadata.info, &metadata.path, planned, &steps, calibration);
+    if options.brackets.is_some() {
+        // A merged frame has no integration time.
+        info.integration_time_us = None;
+    }
+    writer.finish(&info)?;
     Ok(summary)
 }
 
+fn write(writer: &mut RecordingWriter, out: &Standardized) -> Outcome {
+    writer.push(VALUES, out.amplitude.values())?;
+    writer.push(FLAGS, out.flags.values())?;
+    if let Some(sigma) = &out.sigma {
+        writer.push(SIGMA, sigma.values())?;
+    }
+    Ok(())
+}
+
 /// Frames that fit into [`BATCH_BYTES`], at least one.
-fn affordable_slots(metadata: &Metadata, kept: &[String], chain: &Chain<'_>) -> usize {
+fn affordable_slots(metadata: &Metadata, kept: &[String], chain: &Chain<'_>, merging: bool) -> usize {
     let kept = kept.iter().filter_map(|name| metadata.channel(name));
     let kept_bytes: usize = kept.map(isolux_io::recording::ChannelInfo::frame_bytes).sum();
     let (smoothed, history) = chain.bytes_per_pixel();
-    let slot_bytes = metadata.shape.pixels() * (SLOT_BYTES_PER_PIXEL + smoothed) + kept_bytes;
-    (BATCH_BYTES.saturating_sub(metadata.shape.pixels() * history) / slot_bytes).max(1)
+    let sigma = if chain.predicts_sigma() { SIGMA_BYTES_PER_PIXEL } else { 0 };
+    let slot_bytes = metadata.shape.pixels() * (SLOT_BYTES_PER_PIXEL + sigma + smoothed) + kept_bytes;
+    let merge = if merging { BracketMerge::BYTES_PER_PIXEL } else { 0 };
+    (BATCH_BYTES.saturating_sub(metadata.shape.pixels() * (history + merge)) / slot_bytes).max(1)
 }
 
 /// A frame and its result; one for each thread, as far as memory allows.
@@ -189,7 +243,7 @@ fn kept_channels(metadata: &Metadata, keep_input: bool) -> Outcome<Vec<String>> 
     }
     let stored = metadata.channels.iter().filter(|channel| channel.is_stored());
     let names: Vec<String> = stored.map(|channel| channel.name.clone()).collect();
-    match names.iter().find(|name| [VALUES, FLAGS].contains(&name.as_str())) {
+    match names.iter().find(|name| [VALUES, FLAGS, SIGMA].contains(&name.as_str())) {
         Some(name) => Err(Failure::usage(format!(
             "`{}` already has a channel `{name}`, which --keep-input cannot keep beside the new one",
             metadata.path.display()
@@ -203,6 +257,7 @@ fn record(
     info: &RecordingInfo,
     input: &Path,
     standardizer: &Standardizer,
+    steps: &[AppliedStep],
     calibration: Option<&Calibration>,
 ) -> RecordingInfo {
     let legend: Map<String, Value> =
@@ -216,7 +271,7 @@ fn record(
             "input": input.display().to_string(),
             "calibrated_camera": calibration.map(|c| c.camera.clone()),
             "reference": calibration.map_or_else(Reference::default, |c| c.reference),
-            "steps": steps(standardizer),
+            "steps": steps.iter().map(step_json).collect::<Vec<_>>(),
             "notes": notes,
             "flag_bits": legend,
         }),
@@ -224,9 +279,19 @@ fn record(
     info
 }
 
-fn steps(standardizer: &Standardizer) -> Value {
-    let steps = standardizer.steps().iter();
-    steps.map(|s| json!({"effect": s.effect, "term": s.term, "parameters": s.parameters})).collect()
+/// The steps of the chain; highlights are limited after merging.
+fn steps(standardizer: &Standardizer, brackets: Option<&Brackets>) -> Vec<AppliedStep> {
+    let mut steps = standardizer.steps().to_vec();
+    if let Some(brackets) = brackets {
+        let place = steps.iter().position(|step| step.effect == "specular").unwrap_or(steps.len());
+        let parameters = brackets.describe();
+        steps.insert(place, AppliedStep { effect: "merge", term: "bracket", parameters });
+    }
+    steps
+}
+
+fn step_json(step: &AppliedStep) -> Value {
+    json!({"effect": step.effect, "term": step.term, "parameters": step.parameters})
 }
 
 fn describe(summary: &Summary) -> String {

@@ -1,0 +1,114 @@
+//! The options of the predicted standard deviation, and where the noise comes from that it needs.
+
+use clap::{Args, ValueEnum};
+use isolux::calibrate::NoiseSurvey;
+use isolux::standardize::SigmaStep;
+use isolux::terms::NoiseModel;
+use isolux::terms::noise::AmplitudeNoise;
+use isolux::{Calibration, Channels, Choice, Standardizer};
+use isolux_io::Recording;
+
+use crate::failure::{Failure, Outcome};
+use crate::option_values::{not_negative, positive};
+use crate::step_args::StepArgs;
+use crate::{console, frames};
+
+/// Prediction of the standard deviation.
+#[derive(Debug, Default, Args)]
+pub(crate) struct SigmaArgs {
+    /// Predict the standard deviation of each value, and take off the bias that the noise of the distance brings
+    /// [default: on where the noise is given or in the calibration]
+    #[arg(long, value_enum)]
+    pub(crate) sigma: Option<SigmaArg>,
+    /// Noise of an amplitude without light, standard deviation, DN
+    #[arg(long, value_name = "DN", value_parser = not_negative)]
+    pub(crate) read_noise_dn: Option<f64>,
+    /// Shot noise: variance that each DN of amplitude adds, DN²
+    #[arg(long, value_name = "X", value_parser = not_negative)]
+    pub(crate) shot_noise_dn2_per_dn: Option<f64>,
+    /// Modulation frequency, Hz, for the noise of the distance [default: that of the recording]
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub(crate) modulation_frequency_hz: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SigmaArg {
+    /// Where neither options nor the calibration tell the noise, estimate it from the recording
+    On,
+    /// Predict nothing, take nothing off
+    Off,
+}
+
+impl SigmaArgs {
+    /// Adds what the options say to the choice.
+    pub(crate) fn complete(&self, choice: &mut Choice) -> Result<(), Failure> {
+        choice.sigma = match self.sigma {
+            Some(SigmaArg::On) => SigmaStep::Required,
+            None => SigmaStep::WhereKnown,
+            Some(SigmaArg::Off) => SigmaStep::None,
+        };
+        choice.modulation_frequency_hz = self.modulation_frequency_hz;
+        let given = [self.read_noise_dn, self.shot_noise_dn2_per_dn];
+        if given.iter().any(Option::is_some) {
+            if self.sigma == Some(SigmaArg::Off) {
+                return Err(Failure::usage("the noise is given, but --sigma off predicts nothing with it"));
+            }
+            let [read_dn, shot_variance_dn2_per_dn] = given.map(|number| number.unwrap_or(0.0));
+            if read_dn + shot_variance_dn2_per_dn == 0.0 {
+                return Err(Failure::usage(
+                    "no noise at all is given: --read-noise-dn or --shot-noise-dn2-per-dn above 0 expected",
+                ));
+            }
+            let by_amplitude = AmplitudeNoise {
+                read_variance_dn2: read_dn * read_dn,
+                shot_variance_dn2_per_dn,
+                ambient_variance_dn2_per_us: 0.0,
+            };
+            choice.noise = Some(NoiseModel { by_amplitude, by_intensity: None });
+        }
+        Ok(())
+    }
+}
+
+/// Plans the chain for a recording. Where the standard deviation is asked for by name and nothing tells the noise, the
+/// recording is read once to estimate it.
+pub(crate) fn plan(
+    steps: &StepArgs,
+    calibration: Option<&Calibration>,
+    recording: &mut dyn Recording,
+) -> Outcome<Standardizer> {
+    let mut choice = steps.choice()?;
+    let (available, info) = (recording.metadata().available, &recording.metadata().info);
+    choice.modulation_frequency_hz = choice.modulation_frequency_hz.or(info.modulation_frequency_hz);
+    let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
+    if choice.sigma == SigmaStep::Required && !known && available.contains(Channels::AMPLITUDE) {
+        choice.noise = Some(estimate(recording)?);
+    }
+    let standardizer = Standardizer::plan(&choice, calibration, available)?;
+    standardizer.notes().iter().for_each(console::note);
+    Ok(standardizer)
+}
+
+/// The noise that the recording itself shows.
+fn estimate(recording: &mut dyn Recording) -> Outcome<NoiseModel> {
+    let path = recording.metadata().path.display().to_string();
+    let wanted = Channels::AMPLITUDE | Channels::INTEGRATION_TIME | Channels::INTENSITY;
+    let mut survey = NoiseSurvey::new();
+    frames::for_each(recording, wanted, "estimating the noise", |_, frame| {
+        survey.push(frame);
+        Ok(())
+    })?;
+    let found = survey.finish();
+    if found.spatial {
+        console::note(format!(
+            "`{path}`: no two consecutive frames share an integration time: the noise is taken from neighbouring \
+             pixels, texture included"
+        ));
+    }
+    found.fit(Vec::new()).map(|noise| noise.model()).ok_or_else(|| {
+        Failure::data(format!(
+            "`{path}`: no noise found in groups of 16 like pixels or more, consecutive frames of a still scene at one \
+             integration time expected: give the noise with --read-noise-dn and --shot-noise-dn2-per-dn"
+        ))
+    })
+}

@@ -1,0 +1,111 @@
+//! `noise`: the variance of an amplitude, from what is known of its light.
+//!
+//! A bin that holds O electrons has the variance `O + σ_r² + g²/12` (shot, read and quantization noise), and the
+//! amplitude of eq. 1 half of it (methods, section 1). In DN that is a constant plus a multiple of the intensity. Where
+//! the intensity is not recorded, the amplitude stands for the camera's own light, `a/m`, and the integration time
+//! for an ambient light that is the same everywhere.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FitQuality, ParameterError, Source, require};
+
+mod fit;
+
+pub use fit::NoiseCell;
+
+/// Variance of an amplitude by itself and the integration time:
+/// `read + shot · amplitude + ambient · integration time`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AmplitudeNoise {
+    /// Read noise and quantization, DN².
+    pub read_variance_dn2: f64,
+    /// Shot noise of the camera's own light, DN² per DN of amplitude.
+    pub shot_variance_dn2_per_dn: f64,
+    /// Shot noise of the ambient light, DN² per µs.
+    #[serde(default)]
+    pub ambient_variance_dn2_per_us: f64,
+}
+
+/// Variance of an amplitude by the intensity, which holds all light: `read + shot · intensity`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IntensityNoise {
+    /// Read noise and quantization, DN².
+    pub read_variance_dn2: f64,
+    /// Shot noise, DN² per DN of intensity.
+    pub shot_variance_dn2_per_dn: f64,
+}
+
+/// What is known of a camera's noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NoiseModel {
+    /// For frames without intensity.
+    pub by_amplitude: AmplitudeNoise,
+    /// For frames with intensity; otherwise they are taken as frames without.
+    pub by_intensity: Option<IntensityNoise>,
+}
+
+/// Noise of the amplitude, fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Noise {
+    /// Version of this term's parameters.
+    pub version: u32,
+    /// For frames without intensity. It holds for scenes whose share of ambient light is that of the scene it was
+    /// fitted on.
+    pub by_amplitude: AmplitudeNoise,
+    /// For frames with intensity; absent where the sweep had none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_intensity: Option<IntensityNoise>,
+    /// What it was fitted on.
+    pub fitted_on: Vec<Source>,
+    /// How well it fits: groups of like pixels, and the relative error of their standard deviation.
+    pub fit: FitQuality,
+}
+
+impl Noise {
+    /// Parameter version that this library writes.
+    pub const VERSION: u32 = 1;
+
+    /// The numbers alone.
+    #[must_use]
+    pub fn model(&self) -> NoiseModel {
+        NoiseModel { by_amplitude: self.by_amplitude, by_intensity: self.by_intensity }
+    }
+
+    /// Refuses parameters that no fit can have written.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the field.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        require(self.version == Self::VERSION, "noise.version", self.version, "1")?;
+        self.model().check()
+    }
+}
+
+impl NoiseModel {
+    /// Largest coefficient: far beyond any camera, and squares of it are still finite in f32.
+    const LARGEST: f64 = 1e12;
+
+    /// Refuses variances that are negative or nothing at all.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the field.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let expected = "variances from 0 to 1e12, not all of them 0";
+        let AmplitudeNoise { read_variance_dn2, shot_variance_dn2_per_dn, ambient_variance_dn2_per_us } =
+            self.by_amplitude;
+        let numbers = [read_variance_dn2, shot_variance_dn2_per_dn, ambient_variance_dn2_per_us];
+        let fine = numbers.iter().all(|number| (0.0..=Self::LARGEST).contains(number));
+        let found = format!("{numbers:?}");
+        require(fine && numbers.iter().sum::<f64>() > 0.0, "noise.by_amplitude", found, expected)?;
+        let Some(IntensityNoise { read_variance_dn2, shot_variance_dn2_per_dn }) = self.by_intensity else {
+            return Ok(());
+        };
+        let numbers = [read_variance_dn2, shot_variance_dn2_per_dn];
+        let fine = numbers.iter().all(|number| (0.0..=Self::LARGEST).contains(number));
+        let found = format!("{numbers:?}");
+        require(fine && numbers.iter().sum::<f64>() > 0.0, "noise.by_intensity", found, expected)
+    }
+}
