@@ -63,8 +63,8 @@ pub(crate) struct InfoArgs {
 
 /// Fit a camera's calibration from sweeps
 ///
-/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), a
-/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines
+/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`) and
+/// the noise of the amplitude (`noise`), a distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines
 /// is left out.
 ///
 /// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into

@@ -27,6 +27,8 @@ fn every_reader_works(sandbox: &Sandbox) {
     standardize(sandbox, "");
     standardize(sandbox, "--specular sigma");
     standardize(sandbox, "--specular percent");
+    standardize(sandbox, "--specular knee");
+    standardize(sandbox, "--read-noise-dn 1");
 }
 
 #[test]

@@ -5,9 +5,10 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
-use isolux::terms::Spline;
+use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
+use isolux::terms::noise::AmplitudeNoise;
+use isolux::terms::{NoiseModel, Spline};
 use isolux::{
     Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Reference, Shape,
     Standardized, Standardizer,
@@ -97,6 +98,34 @@ fn pointwise_time_per_pixel(bencher: Bencher, shape: Shape) {
 #[divan::bench(args = SHAPES)]
 fn with_histogram(bencher: Bencher, shape: Shape) {
     standardize(bencher, shape, false, None);
+}
+
+/// With the standard deviation of each value; the light by the amplitude, the noise of the distance known.
+fn predicted(bencher: Bencher, shape: Shape, distance: DistanceStep) {
+    let by_amplitude = AmplitudeNoise {
+        read_variance_dn2: 4.0,
+        shot_variance_dn2_per_dn: 0.5,
+        ambient_variance_dn2_per_us: 0.0,
+    };
+    let choice = Choice {
+        specular: Some(SpecularStep::None),
+        distance: Some(distance),
+        sigma: SigmaStep::Required,
+        noise: Some(NoiseModel { by_amplitude, by_intensity: None }),
+        modulation_frequency_hz: Some(20e6),
+        ..Choice::default()
+    };
+    apply(bencher, shape, false, choice);
+}
+
+#[divan::bench(args = SHAPES)]
+fn pointwise_with_sigma(bencher: Bencher, shape: Shape) {
+    predicted(bencher, shape, DistanceStep::Eq5);
+}
+
+#[divan::bench(args = SHAPES)]
+fn pointwise_spline_with_sigma(bencher: Bencher, shape: Shape) {
+    predicted(bencher, shape, DistanceStep::Spline);
 }
 
 fn denoised(bencher: Bencher, shape: Shape, rule: DenoiseRule) {
