@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::evidence::{Collector, ResponseEvidence};
 use super::runs::{Place, Runs};
 use super::warning::FitWarning;
 use super::{CalibrateError, CalibrateSettings, noise_floor, single_time};
@@ -28,6 +29,7 @@ pub struct ExposureSweep {
     motion: MotionWatch,
     /// Values in the central window of the previous frame, for the noise.
     previous: Option<Vec<f64>>,
+    collector: Collector,
 }
 
 /// Sums over the frames of one integration time.
@@ -63,6 +65,8 @@ pub struct ExposureCurve {
     pub saturated_share: Vec<f64>,
     /// Noise at the shortest time, where a run has two frames.
     pub noise_floor: Option<NoiseFloor>,
+    /// What the sweep offers for the response.
+    pub evidence: ResponseEvidence,
     /// What is odd about the recording.
     pub warnings: Vec<FitWarning>,
 }
@@ -81,6 +85,7 @@ impl ExposureSweep {
             pixels: Vec::new(),
             motion: MotionWatch::default(),
             previous: None,
+            collector: Collector::new(),
         }
     }
 
@@ -111,6 +116,7 @@ impl ExposureSweep {
         let time = self.times.entry(time_us.to_bits()).or_default();
         time.frames.push(sums);
         time.noise_dn.extend(noise);
+        self.collector.push(time_us, frame, place == Place::First);
         if place == Place::First {
             self.motion.push(time_us, frame);
         }
@@ -175,7 +181,8 @@ impl ExposureSweep {
         });
         let frames_left_out = self.frames - self.used;
         let source = Source { recording: self.recording, frames_used: self.used, frames_left_out };
-        ExposureCurve { source, samples, saturated_share, noise_floor: floor, warnings }
+        let evidence = self.collector.finish();
+        ExposureCurve { source, samples, saturated_share, noise_floor: floor, evidence, warnings }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod choice;
 mod kernel;
+mod linearise;
 mod plan;
 mod report;
 mod time;
@@ -18,6 +19,7 @@ use crate::quantile::PositiveQuantiles;
 use crate::specular;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
+use linearise::{Lineariser, Linearised, Repaired};
 use plan::Plan;
 use time::TimeGain;
 
@@ -36,6 +38,7 @@ pub struct Standardized {
     pub flags: Plane<PixelFlags>,
     quantiles: PositiveQuantiles,
     denoiser: Denoiser,
+    linearised: Linearised,
 }
 
 /// What happened to one frame.
@@ -73,6 +76,12 @@ pub enum StandardizeError {
     /// The distance that the plan needs is not there.
     #[error("distance found missing, a plane of metres expected: the distance step needs it")]
     DistanceMissing,
+    /// The channel by which the response tells the fill of a pixel is not there.
+    #[error("no {channel} found, one value for each pixel expected: the response's tier needs it")]
+    FillMissing {
+        /// The channel.
+        channel: &'static str,
+    },
     /// The plan smooths over frames, and only one was given.
     #[error(
         "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \
@@ -90,6 +99,7 @@ impl Standardized {
             flags: Plane::filled(shape, PixelFlags::empty()),
             quantiles: PositiveQuantiles::new(),
             denoiser: Denoiser::default(),
+            linearised: Linearised::new(),
         }
     }
 
@@ -133,7 +143,7 @@ impl Standardizer {
         let mut needed = Channels::AMPLITUDE;
         needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
         needed.set(Channels::DISTANCE, self.plan.distance.is_some());
-        needed
+        needed | self.plan.lineariser.as_ref().map_or(Channels::empty(), Lineariser::channels)
     }
 
     /// Standardizes one frame into `out`; the frame itself stays as it is. Allocates only when the shape differs
@@ -179,8 +189,12 @@ impl Standardizer {
         frame.check_shapes()?;
         out.reshape(frame.shape());
         out.flags.values_mut().copy_from_slice(frame.flags.values());
+        let lineariser = self.plan.lineariser.as_ref();
+        let repaired = lineariser
+            .map(|lineariser| out.linearised.fill(lineariser, frame, out.flags.values_mut()))
+            .transpose()?;
         let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
-        self.scale(frame, distance_m, time.gain, out)?;
+        self.scale(frame, distance_m, repaired, time.gain, out)?;
         let specular_cutoff =
             self.plan.specular.and_then(|rule| rule.cutoff(out.amplitude.values(), &mut out.quantiles));
         if let Some(cutoff) = specular_cutoff {
@@ -199,13 +213,18 @@ impl Standardizer {
         &self,
         frame: &Frame,
         distance_m: Option<&Plane<f32>>,
+        repaired: Option<Repaired>,
         gain: TimeGain,
         out: &mut Standardized,
     ) -> Result<(), StandardizeError> {
         const ONES: [f32; BLOCK] = [1.0; BLOCK];
         let law = self.plan.distance.unwrap_or(DistanceGain::ONE);
+        let own_distance_m = match repaired {
+            Some(Repaired::AmplitudeAndDistance) => Some(out.linearised.distance_m()),
+            _ => frame.distance_m.as_ref(),
+        };
         let distances =
-            match (&self.plan.distance, distance_m.or(frame.distance_m.as_ref()), self.plan.denoise) {
+            match (&self.plan.distance, distance_m.or(own_distance_m), self.plan.denoise) {
                 (None, ..) => None,
                 (Some(_), None, _) => return Err(StandardizeError::DistanceMissing),
                 (Some(_), Some(delivered), Some(rule)) if distance_m.is_none() => {
@@ -217,7 +236,8 @@ impl Standardizer {
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
         }
-        let blocks = frame.amplitude.values().chunks(BLOCK).enumerate();
+        let amplitudes = repaired.map_or(frame.amplitude.values(), |_| out.linearised.amplitude());
+        let blocks = amplitudes.chunks(BLOCK).enumerate();
         let outputs =
             out.amplitude.values_mut().chunks_mut(BLOCK).zip(out.flags.values_mut().chunks_mut(BLOCK));
         for ((index, amplitude), (values, flags)) in blocks.zip(outputs) {

@@ -5,6 +5,7 @@ pub mod cubic;
 pub mod eq5;
 pub mod linear;
 pub mod lut;
+pub mod response;
 pub mod spline;
 pub mod square;
 
@@ -14,6 +15,7 @@ mod table;
 pub use cubic::Cubic;
 pub use lut::Lut;
 pub use polynomial::DistanceGain;
+pub use response::Response;
 pub use spline::Spline;
 pub use table::DistanceTable;
 
