@@ -74,6 +74,10 @@ pub(crate) enum TimeArg {
 pub(crate) enum TierArg {
     /// By the integration time alone, as the table does
     Scalar,
+    /// By the amplitude alone, for scenes without strong ambient light
+    Amplitude,
+    /// By the time, for the static scene of the sweep and no other
+    Pixel,
     /// By intensity and amplitude
     Intensity,
     /// By the raw bins; repairs the distance too
@@ -166,6 +170,8 @@ impl StepArgs {
         }
         Ok(Some(match tier {
             TierArg::Scalar => ResponseTier::Scalar,
+            TierArg::Amplitude => ResponseTier::Amplitude,
+            TierArg::Pixel => ResponseTier::Pixel,
             TierArg::Intensity => ResponseTier::Intensity,
             TierArg::PhaseSamples => ResponseTier::PhaseSamples,
         }))

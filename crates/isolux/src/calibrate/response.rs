@@ -3,7 +3,7 @@
 use super::warning::FitWarning;
 use super::{CalibrateSettings, ExposureCurve};
 use crate::terms::response::{
-    IntensityResponse, PhaseSampleResponse, PixelSeries, Response, ResponseError, ScalarResponse,
+    AmplitudeResponse, AmplitudeStack, IntensityResponse, PhaseSampleResponse, PixelResponse, PixelSeries, Response, ResponseError, ScalarResponse,
 };
 use crate::terms::{Lut, Source};
 
@@ -19,6 +19,17 @@ pub(super) fn fit_response(
     let mut missing = Vec::new();
     let scalar = keep("scalar", ScalarResponse::fit(&lut.samples()), &mut missing)
         .map(|tier| ScalarResponse { fitted_on: sources.clone(), ..tier });
+    let floors = curves.iter().filter_map(|curve| curve.noise_floor);
+    let least_dn = floors.map(|floor| floor.low_signal_below_dn).fold(0.0, f64::max);
+    let stacks: Vec<&AmplitudeStack> = curves.iter().map(|curve| &curve.evidence.stack).collect();
+    let amplitude = keep("amplitude", AmplitudeResponse::fit(&stacks, least_dn), &mut missing)
+        .map(|tier| AmplitudeResponse { fitted_on: sources.clone(), ..tier });
+    // A map holds for one scene, so that several sweeps have none in common.
+    let pixel = match stacks.as_slice() {
+        [stack] => keep("pixel", PixelResponse::fit(stack, least_dn), &mut missing)
+            .map(|tier| PixelResponse { fitted_on: sources.clone(), ..tier }),
+        _ => None,
+    };
     let pixels: Vec<PixelSeries> = curves.iter().flat_map(|c| c.evidence.pixels.iter().cloned()).collect();
     let delivered = |value: fn(&PixelSeries) -> bool| pixels.iter().any(value);
     let intensity = delivered(|series| series.iter().any(|m| m.intensity_dn.is_finite()))
@@ -35,7 +46,7 @@ pub(super) fn fit_response(
     let words = missing.iter().map(ToString::to_string).collect();
     warnings.extend(missing);
     let response =
-        Response { version: Response::VERSION, scalar, intensity, phase_samples, warnings: words };
+        Response { version: Response::VERSION, scalar, amplitude, pixel, intensity, phase_samples, warnings: words };
     let any = response.tiers().next().is_some();
     any.then_some(response)
 }

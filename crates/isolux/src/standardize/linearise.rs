@@ -2,13 +2,15 @@
 
 use super::StandardizeError;
 use crate::flags::PixelFlags;
-use crate::frame::{Channels, Frame};
+use crate::frame::{Channels, Frame, IntegrationTime};
 use crate::plane::{Plane, Shape};
-use crate::terms::response::{PlannedBins, PlannedIntensity};
+use crate::terms::response::{PlannedAmplitude, PlannedBins, PlannedIntensity, PlannedPixels};
 
 /// A tier of the response that is applied pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Lineariser {
+    Amplitude(PlannedAmplitude),
+    Pixel(PlannedPixels),
     Intensity(PlannedIntensity),
     PhaseSamples(PlannedBins),
 }
@@ -17,6 +19,7 @@ impl Lineariser {
     /// The channels that it reads besides the amplitude.
     pub(super) fn channels(&self) -> Channels {
         match self {
+            Self::Amplitude(_) | Self::Pixel(_) => Channels::empty(),
             Self::Intensity(_) => Channels::INTENSITY,
             Self::PhaseSamples(_) => Channels::PHASE_SAMPLES,
         }
@@ -54,7 +57,7 @@ impl Linearised {
     /// tells what their linear value is. Allocates only when the shape differs from that of the last frame.
     ///
     /// # Errors
-    /// [`StandardizeError::FillMissing`] when the frame lacks the channel.
+    /// [`StandardizeError`] when the frame lacks the channel or the time, or is not of the map's shape.
     pub(super) fn fill(
         &mut self,
         lineariser: &Lineariser,
@@ -62,11 +65,32 @@ impl Linearised {
         flags: &mut [PixelFlags],
     ) -> Result<Repaired, StandardizeError> {
         self.amplitude.resize(frame.shape().pixels(), f32::NAN);
+        let amplitude = frame.amplitude.values();
         match lineariser {
+            Lineariser::Amplitude(planned) => {
+                self.each(flags, |i| planned.linearise(amplitude[i]));
+                Ok(Repaired::Amplitude)
+            }
+            Lineariser::Pixel(planned) => {
+                let (found, expected) = (frame.shape(), planned.shape);
+                if found != expected {
+                    return Err(StandardizeError::AnotherScene { found, expected });
+                }
+                match &frame.integration_time_us {
+                    IntegrationTime::Unknown => return Err(StandardizeError::TimeUnknown),
+                    IntegrationTime::PerFrame(time_us) => {
+                        self.each(flags, |i| planned.linearise(i, amplitude[i], *time_us));
+                    }
+                    IntegrationTime::PerPixel(map) => {
+                        let times_us = map.values();
+                        self.each(flags, |i| planned.linearise(i, amplitude[i], f64::from(times_us[i])));
+                    }
+                }
+                Ok(Repaired::Amplitude)
+            }
             Lineariser::Intensity(planned) => {
                 let channel = StandardizeError::FillMissing { channel: "intensity" };
                 let intensity = frame.intensity.as_ref().ok_or(channel)?.values();
-                let amplitude = frame.amplitude.values();
                 self.each(flags, |i| planned.linearise(intensity[i], amplitude[i]));
                 Ok(Repaired::Amplitude)
             }

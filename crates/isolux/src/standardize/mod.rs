@@ -82,6 +82,17 @@ pub enum StandardizeError {
         /// The channel.
         channel: &'static str,
     },
+    /// The response's map is that of a scene of another shape.
+    #[error(
+        "the frame is {found}, {expected} expected, the shape of the scene that the response's tier `pixel` was \
+         fitted on: it holds for that scene alone"
+    )]
+    AnotherScene {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape of the map.
+        expected: Shape,
+    },
     /// The plan smooths over frames, and only one was given.
     #[error(
         "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \

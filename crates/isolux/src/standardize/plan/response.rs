@@ -28,6 +28,17 @@ impl Planner<'_> {
                 let words = format!("1 at {reference_us} µs, valid from {min_us} to {max_us} µs");
                 (TimePlan::Scalar { response: scalar, reference_us }, None, words)
             }
+            ResponseTier::Amplitude => {
+                let tier = response.amplitude.as_ref().ok_or_else(|| self.tier_missing(tier))?;
+                let words = format!("amplitudes up to {:.0} DN", tier.largest_dn);
+                (linear, Some(Lineariser::Amplitude(tier.planned())), words)
+            }
+            ResponseTier::Pixel => {
+                let tier = response.pixel.as_ref().ok_or_else(|| self.tier_missing(tier))?;
+                let shape = tier.shape();
+                let words = format!("the static scene of the sweep, {shape} pixels, up to a fill of {:.2}", tier.largest_fill);
+                (linear, Some(Lineariser::Pixel(tier.planned())), words)
+            }
             ResponseTier::Intensity => {
                 let tier = response.intensity.as_ref().ok_or_else(|| self.tier_missing(tier))?;
                 let words = format!("intensity + amplitude up to {:.0} DN", tier.largest_dn);

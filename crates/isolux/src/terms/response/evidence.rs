@@ -68,12 +68,9 @@ impl AmplitudeStack {
         self.amplitude_dn.truncate(kept * pixels);
     }
 
-    /// Times and amplitudes of one pixel where it is valid, in the order of time.
-    pub(super) fn series_into(&self, order: &[usize], pixel: usize, out: &mut Vec<(usize, f64)>) {
-        out.clear();
-        let pixels = self.shape.pixels();
-        let value = |&time: &usize| (time, f64::from(self.amplitude_dn[time * pixels + pixel]));
-        out.extend(order.iter().map(value).filter(|(_, amplitude)| *amplitude > 0.0 && amplitude.is_finite()));
+    /// Amplitude of one pixel in one image, DN.
+    pub(super) fn at(&self, image: usize, pixel: usize) -> f64 {
+        f64::from(self.amplitude_dn[image * self.shape.pixels() + pixel])
     }
 
     /// Indices of the images in the order of time.
@@ -148,8 +145,6 @@ mod tests {
         }
         stack.thin_out();
         assert_eq!(stack.integration_time_us(), [1.0, 3.0, 5.0]);
-        let mut series = Vec::new();
-        stack.series_into(&stack.order(), 0, &mut series);
-        assert_eq!(series, [(0, 1.0), (1, 3.0), (2, 5.0)]);
+        assert_eq!([0, 1, 2].map(|image| stack.at(image, 0)), [1.0, 3.0, 5.0]);
     }
 }

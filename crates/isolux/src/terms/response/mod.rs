@@ -8,31 +8,40 @@
 //! | tier | evidence | takes out |
 //! |---|---|---|
 //! | [`ScalarResponse`] | mean of the image | what a lookup table does |
-//! | `AmplitudeResponse` | amplitude of the pixel | compression without ambient light |
-//! | `PixelResponse` | static scene at several times | compression of each pixel of that scene |
-//! | `IntensityResponse` | DC image | compression by any light |
-//! | `PhaseSampleResponse` | the four raw bins | the same, without approximation, and that of the distance |
+//! | [`AmplitudeResponse`] | amplitude of the pixel | compression without ambient light |
+//! | [`PixelResponse`] | static scene at several times | compression of each pixel of that scene |
+//! | [`IntensityResponse`] | DC image | compression by any light |
+//! | [`PhaseSampleResponse`] | the four raw bins | the same, without approximation, and that of the distance |
 //!
 //! The gauge: a linearised amplitude is that of a pixel without a full well. Times `t_ref / t` it is what such a
 //! pixel would deliver at the reference time; the multiplier of a pixel that is compressed there is not 1.
 
+mod amplitude;
 mod evidence;
+mod fill_time;
 mod full_well;
 mod intensity;
 mod phase_samples;
+mod pixel;
+mod rows;
 mod scalar;
 mod search;
 mod solve;
+mod still;
 mod well;
 
 use serde::{Deserialize, Serialize};
 
+pub use amplitude::AmplitudeResponse;
+pub(crate) use amplitude::PlannedAmplitude;
 pub use evidence::{AmplitudeStack, PixelMeans, PixelSeries};
 pub use full_well::FullWell;
 pub use intensity::IntensityResponse;
 pub(crate) use intensity::PlannedIntensity;
 pub(crate) use phase_samples::PlannedBins;
 pub use phase_samples::PhaseSampleResponse;
+pub use pixel::PixelResponse;
+pub(crate) use pixel::PlannedPixels;
 pub use scalar::ScalarResponse;
 pub use well::SoftWell;
 
@@ -48,6 +57,12 @@ pub struct Response {
     /// From the mean of the image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scalar: Option<ScalarResponse>,
+    /// From the amplitude of the pixel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<AmplitudeResponse>,
+    /// Of one static scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixel: Option<PixelResponse>,
     /// From intensity and amplitude.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intensity: Option<IntensityResponse>,
@@ -76,6 +91,15 @@ pub enum ResponseError {
          until the brightest pixels saturate"
     )]
     NoCompression,
+    /// A map of the image would not fit into a calibration file.
+    #[error(
+        "{pixels} pixels found, at most {} expected: a map of them is too large for a calibration file",
+        PixelResponse::MOST_PIXELS
+    )]
+    ImageTooLarge {
+        /// Pixels of the image.
+        pixels: usize,
+    },
 }
 
 /// How a recording tells the fill of its pixels.
@@ -84,6 +108,11 @@ pub enum ResponseError {
 pub enum ResponseTier {
     /// By the integration time alone.
     Scalar,
+    /// By the amplitude itself.
+    Amplitude,
+    /// By the integration time, for the static scene of the sweep. Never chosen unless asked for: nothing in a frame
+    /// tells that it shows that scene.
+    Pixel,
     /// By intensity and amplitude.
     Intensity,
     /// By the raw bins.
@@ -96,6 +125,8 @@ impl ResponseTier {
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
+            Self::Amplitude => "amplitude",
+            Self::Pixel => "pixel",
             Self::Intensity => "intensity",
             Self::PhaseSamples => "phase_samples",
         }
@@ -105,7 +136,7 @@ impl ResponseTier {
     #[must_use]
     pub fn channels(self) -> Channels {
         match self {
-            Self::Scalar => Channels::empty(),
+            Self::Scalar | Self::Amplitude | Self::Pixel => Channels::empty(),
             Self::Intensity => Channels::INTENSITY,
             Self::PhaseSamples => Channels::PHASE_SAMPLES,
         }
@@ -116,11 +147,12 @@ impl Response {
     /// Parameter version that this library writes.
     pub const VERSION: u32 = 1;
 
-    /// The tiers that were fitted, the best first.
+    /// The tiers that were fitted and hold for any scene, the best first.
     pub fn tiers(&self) -> impl Iterator<Item = ResponseTier> {
         let tiers = [
             self.phase_samples.as_ref().map(|_| ResponseTier::PhaseSamples),
             self.intensity.as_ref().map(|_| ResponseTier::Intensity),
+            self.amplitude.as_ref().map(|_| ResponseTier::Amplitude),
             self.scalar.as_ref().map(|_| ResponseTier::Scalar),
         ];
         tiers.into_iter().flatten()
@@ -133,6 +165,8 @@ impl Response {
     pub fn check(&self) -> Result<(), ParameterError> {
         require(self.version == Self::VERSION, "response.version", self.version, "1")?;
         self.scalar.as_ref().map_or(Ok(()), ScalarResponse::check)?;
+        self.amplitude.as_ref().map_or(Ok(()), AmplitudeResponse::check)?;
+        self.pixel.as_ref().map_or(Ok(()), PixelResponse::check)?;
         self.intensity.as_ref().map_or(Ok(()), IntensityResponse::check)?;
         self.phase_samples.as_ref().map_or(Ok(()), PhaseSampleResponse::check)
     }
