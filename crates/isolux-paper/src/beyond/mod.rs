@@ -7,4 +7,5 @@ pub mod denoise;
 pub mod figure;
 pub mod figures;
 pub mod held_out;
+pub mod response;
 pub mod still;
