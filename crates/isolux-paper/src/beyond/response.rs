@@ -55,7 +55,7 @@ const FITTED_TIMES: u32 = 16;
 /// The longest time over the shortest.
 const SPAN: f64 = 8.0;
 /// Frames of each exposure that is fitted on.
-const FITTED_FRAMES: u32 = 8;
+const FITTED_FRAMES: u32 = 32;
 /// Frames whose mean counts as one tested exposure: what is measured is the compression, not the noise.
 const TEST_FRAMES: u32 = 64;
 /// Share of the clip level from which on a bin is clipped (methods, section 2).

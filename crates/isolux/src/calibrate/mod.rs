@@ -153,8 +153,7 @@ pub fn fit(
     let mut warnings = Vec::new();
     if !exposure_curves.is_empty() {
         let lut = fit_lut(settings, &exposure_curves, &mut warnings)?;
-        calibration.terms.response =
-            response::fit_response(settings, &exposure_curves, &lut, &mut warnings);
+        calibration.terms.response = response::fit_response(settings, &exposure_curves, &lut, &mut warnings);
         calibration.terms.lut = Some(lut);
         let floors = exposure_curves.iter().filter_map(|curve| curve.noise_floor);
         calibration.noise_floor =

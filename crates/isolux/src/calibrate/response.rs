@@ -3,7 +3,8 @@
 use super::warning::FitWarning;
 use super::{CalibrateSettings, ExposureCurve};
 use crate::terms::response::{
-    AmplitudeResponse, AmplitudeStack, IntensityResponse, PhaseSampleResponse, PixelResponse, PixelSeries, Response, ResponseError, ScalarResponse,
+    AmplitudeResponse, AmplitudeStack, IntensityResponse, PhaseSampleResponse, PixelResponse, PixelSeries,
+    Response, ResponseError, ScalarResponse,
 };
 use crate::terms::{Lut, Source};
 
@@ -45,16 +46,19 @@ pub(super) fn fit_response(
         .map(|tier| PhaseSampleResponse { fitted_on: sources.clone(), ..tier });
     let words = missing.iter().map(ToString::to_string).collect();
     warnings.extend(missing);
-    let response =
-        Response { version: Response::VERSION, scalar, amplitude, pixel, intensity, phase_samples, warnings: words };
+    let response = Response {
+        version: Response::VERSION,
+        scalar,
+        amplitude,
+        pixel,
+        intensity,
+        phase_samples,
+        warnings: words,
+    };
     let any = response.tiers().next().is_some();
     any.then_some(response)
 }
 
-fn keep<T>(
-    tier: &'static str,
-    fitted: Result<T, ResponseError>,
-    missing: &mut Vec<FitWarning>,
-) -> Option<T> {
+fn keep<T>(tier: &'static str, fitted: Result<T, ResponseError>, missing: &mut Vec<FitWarning>) -> Option<T> {
     fitted.map_err(|reason| missing.push(FitWarning::NoTier { tier, reason })).ok()
 }

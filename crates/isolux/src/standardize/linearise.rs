@@ -96,7 +96,8 @@ impl Linearised {
             }
             Lineariser::PhaseSamples(planned) => {
                 let channel = StandardizeError::FillMissing { channel: "phase_samples" };
-                let [a1, a2, a3, a4] = frame.phase_samples.as_ref().ok_or(channel)?.each_ref().map(Plane::values);
+                let [a1, a2, a3, a4] =
+                    frame.phase_samples.as_ref().ok_or(channel)?.each_ref().map(Plane::values);
                 let linear = |i: usize| planned.linearise([a1[i], a2[i], a3[i], a4[i]]);
                 match &frame.distance_m {
                     Some(distance_m) if planned.repairs_distance() => {

@@ -19,7 +19,7 @@ use crate::quantile::PositiveQuantiles;
 use crate::specular;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
-use linearise::{Lineariser, Linearised, Repaired};
+use linearise::{Linearised, Lineariser, Repaired};
 use plan::Plan;
 use time::TimeGain;
 
@@ -234,15 +234,14 @@ impl Standardizer {
             Some(Repaired::AmplitudeAndDistance) => Some(out.linearised.distance_m()),
             _ => frame.distance_m.as_ref(),
         };
-        let distances =
-            match (&self.plan.distance, distance_m.or(own_distance_m), self.plan.denoise) {
-                (None, ..) => None,
-                (Some(_), None, _) => return Err(StandardizeError::DistanceMissing),
-                (Some(_), Some(delivered), Some(rule)) if distance_m.is_none() => {
-                    Some(out.denoiser.denoise(rule, frame, delivered))
-                }
-                (Some(_), Some(distances), _) => Some(distances.values()),
-            };
+        let distances = match (&self.plan.distance, distance_m.or(own_distance_m), self.plan.denoise) {
+            (None, ..) => None,
+            (Some(_), None, _) => return Err(StandardizeError::DistanceMissing),
+            (Some(_), Some(delivered), Some(rule)) if distance_m.is_none() => {
+                Some(out.denoiser.denoise(rule, frame, delivered))
+            }
+            (Some(_), Some(distances), _) => Some(distances.values()),
+        };
         let mut gains = [1.0; BLOCK];
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);

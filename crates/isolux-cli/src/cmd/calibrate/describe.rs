@@ -64,7 +64,8 @@ fn lut_table(lut: &Lut) -> String {
 
 /// One row for each tier.
 fn response_table(response: &Response) -> String {
-    let mut rows = vec![["  tier", "full well", "softness", "valid up to", "quality"].map(str::to_owned).to_vec()];
+    let mut rows =
+        vec![["  tier", "full well", "softness", "valid up to", "quality"].map(str::to_owned).to_vec()];
     let mut row = |tier: &str, full: String, softness: Option<f64>, valid: String, fit: &FitQuality| {
         let softness = softness.map_or_else(|| "-".to_owned(), |softness| format!("{softness:.2}"));
         rows.push(vec![format!("  {tier}"), full, softness, valid, quality(fit, "points")]);
@@ -76,19 +77,38 @@ fn response_table(response: &Response) -> String {
         row("scalar", full, Some(tier.softness), valid, &tier.fit);
     }
     if let Some(tier) = &response.amplitude {
-        let full = format!("curve, bends at {} amplitudes", tier.increment.iter().filter(|c| **c > 0.0).count());
+        let full =
+            format!("curve, bends at {} amplitudes", tier.increment.iter().filter(|c| **c > 0.0).count());
         row("amplitude", full, None, dn(tier.largest_dn), &tier.fit);
     }
     if let Some(tier) = &response.pixel {
         let taus = tier.full_well_time_us.iter().flatten();
         let full = format!("map, {} of {} pixels compressed", taus.flatten().count(), tier.shape().pixels());
-        row("pixel (that scene)", full, Some(tier.softness), format!("fill {:.2}", tier.largest_fill), &tier.fit);
+        row(
+            "pixel (that scene)",
+            full,
+            Some(tier.softness),
+            format!("fill {:.2}", tier.largest_fill),
+            &tier.fit,
+        );
     }
     if let Some(tier) = &response.intensity {
-        row("intensity", dn(tier.well.full_well_dn), Some(tier.well.softness), dn(tier.largest_dn), &tier.fit);
+        row(
+            "intensity",
+            dn(tier.well.full_well_dn),
+            Some(tier.well.softness),
+            dn(tier.largest_dn),
+            &tier.fit,
+        );
     }
     if let Some(tier) = &response.phase_samples {
-        row("phase_samples", dn(tier.well.full_well_dn), Some(tier.well.softness), dn(tier.largest_dn), &tier.fit);
+        row(
+            "phase_samples",
+            dn(tier.well.full_well_dn),
+            Some(tier.well.softness),
+            dn(tier.largest_dn),
+            &tier.fit,
+        );
     }
     table(&rows)
 }

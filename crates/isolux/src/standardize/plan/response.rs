@@ -36,7 +36,10 @@ impl Planner<'_> {
             ResponseTier::Pixel => {
                 let tier = response.pixel.as_ref().ok_or_else(|| self.tier_missing(tier))?;
                 let shape = tier.shape();
-                let words = format!("the static scene of the sweep, {shape} pixels, up to a fill of {:.2}", tier.largest_fill);
+                let words = format!(
+                    "the static scene of the sweep, {shape} pixels, up to a fill of {:.2}",
+                    tier.largest_fill
+                );
                 (linear, Some(Lineariser::Pixel(tier.planned())), words)
             }
             ResponseTier::Intensity => {
@@ -47,7 +50,8 @@ impl Planner<'_> {
             ResponseTier::PhaseSamples => {
                 let tier = response.phase_samples.as_ref().ok_or_else(|| self.tier_missing(tier))?;
                 let planned = tier.planned();
-                let repaired = if planned.repairs_distance() { "amplitude and distance" } else { "amplitude" };
+                let repaired =
+                    if planned.repairs_distance() { "amplitude and distance" } else { "amplitude" };
                 let words = format!("{repaired} from bins up to {:.0} DN", tier.largest_dn);
                 (linear, Some(Lineariser::PhaseSamples(planned)), words)
             }

@@ -101,7 +101,12 @@ impl AmplitudeResponse {
         require(found.is_empty(), field, found, "numbers from 0 to 1000")?;
         let largest = self.linear_dn(self.largest_dn).unwrap_or(f64::NAN);
         let fine = positive(self.largest_dn) && positive(largest);
-        require(fine, "response.amplitude.largest_dn", self.largest_dn, "positive DN of a finite linear value")
+        require(
+            fine,
+            "response.amplitude.largest_dn",
+            self.largest_dn,
+            "positive DN of a finite linear value",
+        )
     }
 
     /// Prepared for many pixels.
@@ -146,9 +151,8 @@ fn collect(stacks: &[&AmplitudeStack], least_amplitude_dn: f64) -> Vec<Vec<Row>>
         chosen.dedup();
         for pixel in chosen {
             scene.series_into(pixel, &mut samples);
-            let row = |s: &super::fill_time::Sample| {
-                [s.ln_rate + scene.times_us[s.time].ln(), s.ln_rate, s.weight]
-            };
+            let row =
+                |s: &super::fill_time::Sample| [s.ln_rate + scene.times_us[s.time].ln(), s.ln_rate, s.weight];
             if samples.len() >= LEAST_SAMPLES {
                 pixels.push(samples.iter().map(row).collect());
             }
@@ -247,7 +251,8 @@ fn non_negative(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         let mut moved = 0.0f64;
         for i in 0..x.len() {
             if matrix[i][i] > 0.0 {
-                let rest: f64 = matrix[i].iter().zip(&x).map(|(m, x)| m * x).sum::<f64>() - matrix[i][i] * x[i];
+                let rest: f64 =
+                    matrix[i].iter().zip(&x).map(|(m, x)| m * x).sum::<f64>() - matrix[i][i] * x[i];
                 let found = ((right[i] - rest) / matrix[i][i]).max(0.0);
                 moved = moved.max((found - x[i]).abs());
                 x[i] = found;

@@ -50,7 +50,8 @@ impl FullWell {
     /// Largest value that is inverted: below the clip, where it is known, and where the slope is large enough, DN.
     pub(super) fn largest_dn(&self, clip_dn: Option<f64>) -> f64 {
         let by_slope = self.full_well_dn * self.shape().kept_at_slope(Self::LEAST_SLOPE);
-        let by_clip = clip_dn.map_or(f64::INFINITY, |clip| Self::CLIPPED_SHARE * (clip - self.black_level_dn));
+        let by_clip =
+            clip_dn.map_or(f64::INFINITY, |clip| Self::CLIPPED_SHARE * (clip - self.black_level_dn));
         self.black_level_dn + by_slope.min(by_clip)
     }
 
@@ -66,7 +67,12 @@ impl FullWell {
         require(black.abs() <= well, fields[2], black, "a number of DN, at most the full well")?;
         let most = self.largest_dn(None) * (1.0 + 1e-9) + 1e-9 * well;
         let fine = largest_dn > black && largest_dn <= most;
-        require(fine, fields[3], largest_dn, "DN above the black level, where the slope of the well is 0.2 or more")
+        require(
+            fine,
+            fields[3],
+            largest_dn,
+            "DN above the black level, where the slope of the well is 0.2 or more",
+        )
     }
 }
 
@@ -110,7 +116,9 @@ pub(super) struct Fitted {
 pub(super) trait Channel<const R: usize, const Q: usize>: Model<R, Q> {
     /// The series of one pixel with a first guess of its light, from points that do not exceed `usable_dn`.
     fn series(&self, pixel: &[PixelMeans], start: &FullWell, usable_dn: f64) -> Vec<Series<R, Q>>;
-    /// (time, value) of one pixel, of the value that clips first, whether usable or not.
+    /// (time, value) of one pixel, of a value that stays at the clip level once the pixel is clipped, usable or not.
+    fn clipping_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)>;
+    /// (time, value) of one pixel, of the value that reaches the clip first.
     fn largest_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)>;
     /// (time, value) of one pixel, of a value that without light is the black level, where usable.
     fn plain_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)>;
@@ -131,13 +139,12 @@ pub(super) fn fit<const R: usize, const Q: usize, C: Channel<R, Q>>(
     }
     let black_level_dn = black_level(channel, &pixels);
     let above = |pixel: &PixelSeries| {
-        let values = channel.largest_values(pixel).into_iter();
+        let values = channel.clipping_values(pixel).into_iter();
         values.map(|(t, y)| (t, y - black_level_dn)).collect::<Vec<_>>()
     };
     let clip_dn = plateau(pixels.iter().map(above)).map(|clip| clip + black_level_dn);
-    let usable_dn = clip_dn.map_or(f64::INFINITY, |clip| {
-        black_level_dn + FullWell::CLIPPED_SHARE * (clip - black_level_dn)
-    });
+    let usable_dn = clip_dn
+        .map_or(f64::INFINITY, |clip| black_level_dn + FullWell::CLIPPED_SHARE * (clip - black_level_dn));
     let usable = |pixel: &PixelSeries| pixel.iter().filter(|m| !m.unusable).copied().collect::<Vec<_>>();
     let values = pixels.iter().flat_map(|p| channel.largest_values(&usable(p))).map(|(_, y)| y);
     let top = values.filter(|y| *y < usable_dn).fold(f64::NEG_INFINITY, f64::max);

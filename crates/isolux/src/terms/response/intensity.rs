@@ -24,7 +24,7 @@ use crate::terms::{FitQuality, ParameterError, Source};
 pub struct IntensityResponse {
     /// The well; its black level is that of the DC image.
     pub well: FullWell,
-    /// Level at which intensity plus amplitude, the highest bin, clips, DN, where the sweep reached it.
+    /// Level at which bins clip, DN, where the sweep reached it: the intensity of a pixel that is clipped altogether.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip_dn: Option<f64>,
     /// Largest intensity plus amplitude that is inverted, DN; a pixel above is refused.
@@ -144,6 +144,12 @@ impl Channel<2, 2> for Dc {
         let mut contrasts: Vec<f64> = points.iter().map(contrast).filter(|c| *c > 0.0).collect();
         let Some(contrast) = crate::statistics::median(&mut contrasts) else { return Vec::new() };
         vec![Series { points, light: [guess.ln(), contrast.min(1.0).ln()] }]
+    }
+
+    fn clipping_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)> {
+        // Intensity plus amplitude falls back to the clip level while the amplitude collapses.
+        let values = pixel.iter().map(|m| (m.integration_time_us, m.intensity_dn));
+        values.filter(|(_, y)| y.is_finite()).collect()
     }
 
     fn largest_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)> {

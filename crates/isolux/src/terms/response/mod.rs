@@ -38,8 +38,8 @@ pub use evidence::{AmplitudeStack, PixelMeans, PixelSeries};
 pub use full_well::FullWell;
 pub use intensity::IntensityResponse;
 pub(crate) use intensity::PlannedIntensity;
-pub(crate) use phase_samples::PlannedBins;
 pub use phase_samples::PhaseSampleResponse;
+pub(crate) use phase_samples::PlannedBins;
 pub use pixel::PixelResponse;
 pub(crate) use pixel::PlannedPixels;
 pub use scalar::ScalarResponse;
@@ -78,7 +78,9 @@ pub struct Response {
 #[non_exhaustive]
 pub enum ResponseError {
     /// Too few integration times.
-    #[error("{found} usable integration times found, at least {expected} expected: vary the time in the sweep")]
+    #[error(
+        "{found} usable integration times found, at least {expected} expected: vary the time in the sweep"
+    )]
     TooFewTimes {
         /// Number found.
         found: usize,

@@ -35,10 +35,7 @@ impl PhaseSampleResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few or nothing is compressed.
-    pub fn fit(
-        pixels: &[PixelSeries],
-        modulation_frequency_hz: Option<f64>,
-    ) -> Result<Self, ResponseError> {
+    pub fn fit(pixels: &[PixelSeries], modulation_frequency_hz: Option<f64>) -> Result<Self, ResponseError> {
         let Fitted { well, clip_dn, largest_dn, fit } = fit(&Bins, pixels)?;
         Ok(Self { well, clip_dn, largest_dn, modulation_frequency_hz, fitted_on: Vec::new(), fit })
     }
@@ -113,6 +110,10 @@ impl Channel<1, 1> for Bins {
         (0..4).filter_map(|bin| series_of_bin(pixel, bin, start, usable_dn)).collect()
     }
 
+    fn clipping_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)> {
+        self.largest_values(pixel)
+    }
+
     fn largest_values(&self, pixel: &[PixelMeans]) -> Vec<(f64, f64)> {
         let largest = |m: &PixelMeans| m.phase_samples_dn.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let values = pixel.iter().map(|m| (m.integration_time_us, largest(m)));
@@ -131,12 +132,7 @@ impl Channel<1, 1> for Bins {
     }
 }
 
-fn series_of_bin(
-    pixel: &[PixelMeans],
-    bin: usize,
-    start: &FullWell,
-    usable_dn: f64,
-) -> Option<Series<1, 1>> {
+fn series_of_bin(pixel: &[PixelMeans], bin: usize, start: &FullWell, usable_dn: f64) -> Option<Series<1, 1>> {
     let usable = |m: &&PixelMeans| !m.unusable && m.phase_samples_dn[bin] < usable_dn;
     let point = |m: &PixelMeans| {
         let value = m.phase_samples_dn[bin];

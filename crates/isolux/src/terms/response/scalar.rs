@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::well::SoftWell;
 use super::search::minimum;
+use super::well::SoftWell;
 use super::{ResponseError, check_softness};
 use crate::terms::lut::{ExposureSample, LutAnswer};
 use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
@@ -62,7 +62,11 @@ impl ScalarResponse {
         let well = SoftWell { softness: self.softness };
         let response = |time_us: f64| time_us * well.slope(time_us / self.full_well_time_us);
         let multiplier = response(reference_us) / response(integration_time_us);
-        if integration_time_us < min_us { LutAnswer::Below(multiplier) } else { LutAnswer::Inside(multiplier) }
+        if integration_time_us < min_us {
+            LutAnswer::Below(multiplier)
+        } else {
+            LutAnswer::Inside(multiplier)
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), ParameterError> {
@@ -177,7 +181,8 @@ mod tests {
     fn the_fit_recovers_the_well_of_its_own_model() {
         for (tau_us, softness) in [(25_000.0, 4.0), (30_000.0, 8.0), (40_000.0, 5.5)] {
             let well = SoftWell { softness };
-            let found = ScalarResponse::fit(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / tau_us))).unwrap();
+            let found =
+                ScalarResponse::fit(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / tau_us))).unwrap();
             // Without noise only the last grid's step is left, and the softness where hardly anything is compressed.
             assert!((found.full_well_time_us / tau_us - 1.0).abs() < 1e-3, "{found:?}");
             assert!((found.softness / softness - 1.0).abs() < 1e-2, "{found:?}");

@@ -117,7 +117,8 @@ fn all_residuals<'a, const R: usize, const Q: usize>(
     well: &'a FullWell,
     model: &'a impl Model<R, Q>,
 ) -> impl Iterator<Item = f64> + 'a {
-    let of = move |s: &'a Series<R, Q>| s.points.iter().flat_map(move |p| residuals(p, well, &s.light, model));
+    let of =
+        move |s: &'a Series<R, Q>| s.points.iter().flat_map(move |p| residuals(p, well, &s.light, model));
     series.iter().flat_map(of)
 }
 
@@ -175,15 +176,19 @@ impl<const Q: usize> Normal<Q> {
         model: &impl Model<R, Q>,
         sigma: f64,
     ) -> Self {
-        let mut normal =
-            Self { shared: Matrix3::zeros(), gradient: Vector3::zeros(), own: Vec::with_capacity(series.len()) };
+        let mut normal = Self {
+            shared: Matrix3::zeros(),
+            gradient: Vector3::zeros(),
+            own: Vec::with_capacity(series.len()),
+        };
         let shifted = [0, 1, 2].map(|axis| {
             let mut step = Vector3::zeros();
             step[axis] = STEP;
             [moved(well, &step), moved(well, &-step)]
         });
         for series in series {
-            let mut own = Own { block: SMatrix::zeros(), cross: SMatrix::zeros(), gradient: SVector::zeros() };
+            let mut own =
+                Own { block: SMatrix::zeros(), cross: SMatrix::zeros(), gradient: SVector::zeros() };
             for point in &series.points {
                 let now = residuals(point, well, &series.light, model);
                 let shared = shifted.each_ref().map(|[up, down]| {
