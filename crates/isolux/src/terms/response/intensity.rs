@@ -81,8 +81,8 @@ impl PlannedIntensity {
     /// Linear amplitude of a pixel in DN; `None` above the range.
     pub(crate) fn linearise(&self, intensity_dn: f32, amplitude_dn: f32) -> Option<f32> {
         let (intensity, amplitude) = (f64::from(intensity_dn) - self.black_level_dn, f64::from(amplitude_dn));
-        // NaN is refused too.
-        if !(intensity + amplitude <= self.largest_dn) {
+        let highest = intensity + amplitude;
+        if highest.is_nan() || highest > self.largest_dn {
             return None;
         }
         let bins = bins(intensity, amplitude, FRAC_PI_8);

@@ -134,7 +134,7 @@ impl PlannedPixels {
     /// Linear amplitude of pixel `index`; `None` where it is fuller than the fit knows, or the time is none.
     pub(crate) fn linearise(&self, index: usize, amplitude_dn: f32, time_us: f64) -> Option<f32> {
         let fill = time_us / self.full_well_time_us[index];
-        if !(fill <= self.largest_fill) {
+        if fill.is_nan() || fill > self.largest_fill {
             return None;
         }
         let slope = SoftWell { softness: self.softness }.slope(fill);
