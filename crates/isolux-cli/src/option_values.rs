@@ -6,6 +6,12 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err("a positive number expected".to_owned()) }
 }
 
+/// 0 or a positive finite number.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    if value >= 0.0 && value.is_finite() { Ok(value) } else { Err("a number from 0 on expected".to_owned()) }
+}
+
 /// A number above 0 and up to 1.
 pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     let value = positive(text)?;
