@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use isolux::calibration::{REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
 
-use crate::option_values::positive;
+use crate::option_values::{not_negative, positive};
 use crate::step_args::StepArgs;
 
 /// Makes the amplitude images of time-of-flight cameras comparable: one material has one value, whatever the
@@ -63,9 +63,10 @@ pub(crate) struct InfoArgs {
 
 /// Fit a camera's calibration from sweeps
 ///
-/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`) and
-/// the noise of the amplitude (`noise`), a distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines
-/// is left out.
+/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), the
+/// compression of each pixel (`response`: the more channels, the better) and the noise of the amplitude (`noise`), a
+/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines is
+/// left out.
 ///
 /// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
 /// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
@@ -120,6 +121,7 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none\n  \
     isolux standardize desk -c CAMERA.json -o out --denoise wiener\n  \
+    isolux standardize desk -c CAMERA.json -o out --time response --response-tier intensity\n  \
     isolux standardize brackets -c CAMERA.json -o merged --merge-bracket")]
 pub(crate) struct StandardizeArgs {
     /// The recording
@@ -215,6 +217,7 @@ pub(crate) struct DiagnoseArgs {
     isolux simulate --list\n  \
     isolux simulate patches -o patches --seed 7\n  \
     isolux simulate --print patches > mine.toml\n  \
+    isolux simulate office-desk -o bright-desk --ambient 2 --phase-samples\n  \
     isolux simulate mine.toml -o mine --camera o3d-like")]
 pub(crate) struct SimulateArgs {
     /// Name of a built-in scene, or a TOML file
@@ -226,6 +229,9 @@ pub(crate) struct SimulateArgs {
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Ambient light on a white surface, relative to the camera's own at 1 m [default: the scene's]
+    #[arg(long, value_name = "F", value_parser = not_negative)]
+    pub(crate) ambient: Option<f64>,
     /// Name of a built-in camera, or a TOML file [default: the scene's]
     #[arg(long, value_name = "CAMERA")]
     pub(crate) camera: Option<String>,

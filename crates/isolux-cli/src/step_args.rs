@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use isolux::specular::{HistogramRule, KneeRule, PercentRule, SigmaRule};
 use isolux::standardize::{DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::terms::response::ResponseTier;
 use isolux::{Choice, DenoiseRule, SpecularRule};
 
 use crate::failure::Failure;
@@ -18,6 +19,10 @@ pub(crate) struct StepArgs {
     /// Step for the integration time [default: by method]
     #[arg(long, value_enum)]
     pub(crate) time: Option<TimeArg>,
+    /// How the response tells the fill of each pixel, for --time response [default: the best that calibration and
+    /// recording allow]
+    #[arg(long, value_enum, value_name = "TIER")]
+    pub(crate) response_tier: Option<TierArg>,
     /// Step for the distance [default: by method]
     #[arg(long, value_enum)]
     pub(crate) distance: Option<DistanceArg>,
@@ -59,10 +64,27 @@ pub(crate) enum MethodArg {
 pub(crate) enum TimeArg {
     /// The calibration's lookup table
     Lut,
+    /// The calibration's response to the fill of each pixel, then t_ref / t
+    Response,
     /// t_ref / t
     Linear,
     /// Leave it in
     None,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum TierArg {
+    /// By the integration time alone, as the table does
+    Scalar,
+    /// By the amplitude alone, for scenes without strong ambient light
+    Amplitude,
+    /// By the time, for the static scene of the sweep and no other
+    Pixel,
+    /// By intensity and amplitude
+    Intensity,
+    /// By the raw bins; repairs the distance too
+    PhaseSamples,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -116,6 +138,7 @@ impl StepArgs {
         };
         let time = self.time.map(|time| match time {
             TimeArg::Lut => TimeStep::Lut,
+            TimeArg::Response => TimeStep::Response,
             TimeArg::Linear => TimeStep::Linear,
             TimeArg::None => TimeStep::None,
         });
@@ -135,10 +158,33 @@ impl StepArgs {
         });
         let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
         let specular = Some(self.specular()?);
-        let mut choice =
-            Choice { method, time, denoise, distance, specular, low_signal_below_dn, ..Choice::default() };
+        let response_tier = self.tier()?;
+        let mut choice = Choice {
+            method,
+            time,
+            response_tier,
+            denoise,
+            distance,
+            specular,
+            low_signal_below_dn,
+            ..Choice::default()
+        };
         self.sigma.complete(&mut choice)?;
         Ok(choice)
+    }
+
+    fn tier(&self) -> Result<Option<ResponseTier>, Failure> {
+        let Some(tier) = self.response_tier else { return Ok(None) };
+        if !matches!(self.time, Some(TimeArg::Response)) {
+            return Err(Failure::usage("--response-tier belongs to --time response, which is not chosen"));
+        }
+        Ok(Some(match tier {
+            TierArg::Scalar => ResponseTier::Scalar,
+            TierArg::Amplitude => ResponseTier::Amplitude,
+            TierArg::Pixel => ResponseTier::Pixel,
+            TierArg::Intensity => ResponseTier::Intensity,
+            TierArg::PhaseSamples => ResponseTier::PhaseSamples,
+        }))
     }
 
     fn specular(&self) -> Result<SpecularStep, Failure> {

@@ -11,7 +11,8 @@ use isolux_io::{ChannelSpec, ElementType, RecordingInfo, RecordingWriter};
 use proptest::prelude::*;
 use support::run;
 use support::strategies::{
-    CHANNELS, PIXELS, SHAPE, bits, calibration, cases, cubics, frames, luts, noises, splines, words,
+    CHANNELS, PIXELS, SHAPE, bits, calibration, cases, cubics, frames, luts, noises, responses, splines,
+    words,
 };
 
 proptest! {
@@ -21,13 +22,14 @@ proptest! {
     #[test]
     fn a_calibration_file_reads_back(
         camera in prop::option::of(".{0,20}"), lut in prop::option::of(luts()), cubic in prop::option::of(cubics()),
-        spline in prop::option::of(splines()), noise in prop::option::of(noises()),
+        response in prop::option::of(responses()), spline in prop::option::of(splines()),
+        noise in prop::option::of(noises()),
         time in 1.0..1e5f64, distance_m in 0.01..100.0f64, floor in prop::option::of((0.01..99.0f64, 1.0..1e4f64)),
         warnings in words(),
     ) {
         let reference = Reference { integration_time_us: Some(time), distance_m };
         let mut written = Calibration::new(camera, reference);
-        written.terms = Terms { lut, cubic, spline, noise };
+        written.terms = Terms { lut, response, cubic, spline, noise };
         if let Some(spline) = & written.terms.spline {
             written.reference.distance_m = spline.reference_distance_m;
         }

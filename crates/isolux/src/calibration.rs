@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Cubic, Lut, Noise, ParameterError, Spline, require};
+use crate::terms::{Cubic, Lut, Noise, ParameterError, Response, Spline, require};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -61,6 +61,9 @@ pub struct Terms {
     /// Integration time, the paper's lookup table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lut: Option<Lut>,
+    /// Integration time, the fill-level response.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub response: Option<Response>,
     /// Distance, the paper's cubic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cubic: Option<Cubic>,
@@ -146,9 +149,11 @@ impl Calibration {
             let fine = positive(floor.low_signal_below_dn) && positive(floor.amplitude_sd_dn);
             require(fine, "noise_floor", floor.low_signal_below_dn, "positive numbers")?;
         }
-        let needs_time = self.terms.lut.is_some() && integration_time_us.is_none();
-        require(!needs_time, "reference.integration_time_us", "nothing", "the time at which the lut is 1")?;
+        let needs_time = self.terms.lut.is_some() || self.terms.response.is_some();
+        let fine = !needs_time || integration_time_us.is_some();
+        require(fine, "reference.integration_time_us", "nothing", "the time that lut and response refer to")?;
         self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
+        self.terms.response.as_ref().map_or(Ok(()), Response::check)?;
         self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
         self.terms.noise.as_ref().map_or(Ok(()), Noise::check)?;
         let Some(spline) = &self.terms.spline else { return Ok(()) };

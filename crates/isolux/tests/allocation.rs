@@ -4,9 +4,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use isolux::specular::{KneeRule, PercentRule, SigmaRule};
-use isolux::standardize::{DenoiseStep, SigmaStep, SpecularStep};
+use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep, TimeStep};
 use isolux::terms::NoiseModel;
 use isolux::terms::noise::AmplitudeNoise;
+use isolux::terms::response::ResponseTier;
 use isolux::{
     Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized,
     Standardizer,
@@ -140,3 +141,49 @@ fn nothing_is_allocated_per_denoised_frame() {
         assert_eq!(ALLOCATIONS.get() - before, 0, "{rule:?}");
     }
 }
+
+#[test]
+fn nothing_is_allocated_per_linearised_frame() {
+    let shape = Shape::new(48, 64);
+    let calibration: isolux::Calibration = serde_json::from_str(RESPONSE).unwrap();
+    let channels = Channels::AMPLITUDE
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::INTENSITY
+        | Channels::PHASE_SAMPLES;
+    let mut frame = frame(shape, 900, false);
+    let bins = [1.5, 1.0, 0.5, 1.0].map(|share| {
+        Plane::from_fn(shape, |row, column| share * (200.0 + ((row * 29 + column * 7) % 611) as f32))
+    });
+    frame.intensity = Some(bins[1].clone());
+    frame.phase_samples = Some(bins);
+    for tier in [ResponseTier::PhaseSamples, ResponseTier::Intensity, ResponseTier::Amplitude] {
+        let time = Some(TimeStep::Response);
+        let choice = Choice { time, response_tier: Some(tier), ..Choice::default() };
+        let choice = Choice { distance: Some(DistanceStep::Square), ..choice };
+        let standardizer = Standardizer::plan(&choice, Some(&calibration), channels).unwrap();
+        let mut out = Standardized::new(shape);
+        standardizer.apply(&frame, &mut out).unwrap();
+        let before = ALLOCATIONS.get();
+        let summary = standardizer.apply(&frame, &mut out).unwrap();
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{tier:?}");
+        assert!(0 < summary.valid && summary.valid <= summary.pixels, "{tier:?} {summary:?}");
+    }
+}
+
+/// A calibration that holds a response and nothing else.
+const RESPONSE: &str = r#"{
+    "format": "isolux-calibration", "version": 1, "created_by": "a test",
+    "reference": {"integration_time_us": 8200, "distance_m": 0.75},
+    "terms": {"response": {
+        "version": 1,
+        "amplitude": {"hinge_dn": [300], "increment": [0.1], "largest_dn": 900, "fitted_on": [],
+            "fit": {"points": 9, "residual": 0}},
+        "intensity": {"well": {"full_well_dn": 2000, "softness": 6, "black_level_dn": 0}, "largest_dn": 1700,
+            "fitted_on": [], "fit": {"points": 9, "residual": 0}},
+        "phase_samples": {"well": {"full_well_dn": 1500, "softness": 6, "black_level_dn": 10}, "largest_dn": 1200,
+            "modulation_frequency_hz": 2e7, "fitted_on": [], "fit": {"points": 9, "residual": 0}},
+        "warnings": []
+    }},
+    "warnings": []
+}"#;

@@ -146,7 +146,7 @@ impl Demo {
             fs::create_dir(self.folder.join(folder)).map_err(io)?;
         }
         for scene in [EXPOSURE_SWEEP, DISTANCE_SWEEP].into_iter().chain(EXHIBITS.iter().map(|e| e.scene)) {
-            let simulation = simulate::simulation(scene, None, self.seed)?;
+            let simulation = simulate::simulation(scene, None, None, self.seed)?;
             simulate::record(&simulation, simulate::Extras::default(), &self.recording(scene), false)?;
         }
         let (calibration, report) = calibrate::fit(

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Outcome {
     let (Some(scene), Some(output)) = (&args.scene, &args.output) else {
         return Err(Failure::usage("SCENE and -o REC expected"));
     };
-    let simulation = simulation(scene, args.camera.as_deref(), args.seed)?;
+    let simulation = simulation(scene, args.camera.as_deref(), args.ambient, args.seed)?;
     let extras = Extras { phase_samples: args.phase_samples, truth: args.truth };
     record(&simulation, extras, output, args.force)?;
     console::print(format!(
@@ -44,12 +44,18 @@ pub(crate) fn run(args: &SimulateArgs) -> Outcome {
     ))
 }
 
-/// The simulation of a scene, built in or from a file, with its own camera or another.
-pub(crate) fn simulation(scene: &str, camera: Option<&str>, seed: u64) -> Outcome<Simulation> {
-    let scene = match scene.ends_with(".toml") {
+/// The simulation of a scene, built in or from a file, with its own camera or another, its own ambient light or another.
+pub(crate) fn simulation(
+    scene: &str,
+    camera: Option<&str>,
+    ambient: Option<f64>,
+    seed: u64,
+) -> Outcome<Simulation> {
+    let mut scene = match scene.ends_with(".toml") {
         true => Scene::from_toml(scene, &read(scene)?)?,
         false => Scene::builtin(scene).map_err(Failure::usage)?,
     };
+    scene.ambient = ambient.unwrap_or(scene.ambient);
     let camera = camera.unwrap_or(&scene.camera);
     let model = match camera.ends_with(".toml") {
         true => CameraModel::from_toml(camera, &read(camera)?)?,
@@ -153,6 +159,7 @@ fn describe(simulation: &Simulation, extras: Extras) -> RecordingInfo {
         ..RecordingInfo::default()
     };
     let (scene, seed) = (&simulation.scene().name, simulation.seed());
-    info.other.insert("simulation".to_owned(), json!({"scene": scene, "seed": seed}));
+    let ambient = simulation.scene().ambient;
+    info.other.insert("simulation".to_owned(), json!({"scene": scene, "ambient": ambient, "seed": seed}));
     info
 }

@@ -5,6 +5,7 @@ use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::ExposureSample;
 use isolux::terms::noise::{AmplitudeNoise, IntensityNoise, Noise};
+use isolux::terms::response::{FullWell, PhaseSampleResponse, PixelResponse, Response};
 use isolux::terms::spline::Harmonic;
 use isolux::terms::{Cubic, FitQuality, Lut, Source, Spline};
 use isolux::{
@@ -135,6 +136,50 @@ pub fn luts() -> impl Strategy<Value = Lut> {
             integration_time_us,
             fitted_on,
             fit,
+            warnings,
+        }
+    })
+}
+
+fn wells() -> impl Strategy<Value = FullWell> {
+    (1.0..1e5f64, 1.0..16.0f64, -1.0..1.0f64).prop_map(|(full_well_dn, softness, black)| FullWell {
+        full_well_dn,
+        softness,
+        black_level_dn: black * full_well_dn,
+    })
+}
+
+/// Two tiers of different kinds, one of them a map of 2×3 pixels.
+pub fn responses() -> impl Strategy<Value = Response> {
+    let map = prop::collection::vec(prop::option::of(1e-2..1e6f32), 6);
+    let pixel = (map, 1.0..16.0f64, 0.1..1.0f64, sources(), quality()).prop_map(
+        |(map, softness, largest_fill, fitted_on, fit)| PixelResponse {
+            softness,
+            largest_fill,
+            valid_integration_time_us: [10.0, 20.0],
+            full_well_time_us: map.chunks(3).map(<[_]>::to_vec).collect(),
+            fitted_on,
+            fit,
+        },
+    );
+    let bins = (wells(), prop::option::of(1e6..1e8f64), 0.01..0.5f64, sources(), quality()).prop_map(
+        |(well, modulation_frequency_hz, share, fitted_on, fit)| PhaseSampleResponse {
+            largest_dn: well.black_level_dn + share * well.full_well_dn,
+            clip_dn: modulation_frequency_hz.map(|_| 2.0 * well.full_well_dn),
+            well,
+            modulation_frequency_hz,
+            fitted_on,
+            fit,
+        },
+    );
+    (prop::option::of(pixel), prop::option::of(bins), words()).prop_map(|(pixel, phase_samples, warnings)| {
+        Response {
+            version: Response::VERSION,
+            scalar: None,
+            amplitude: None,
+            pixel,
+            intensity: None,
+            phase_samples,
             warnings,
         }
     })

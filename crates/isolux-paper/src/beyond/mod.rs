@@ -9,5 +9,6 @@ pub mod figure;
 pub mod figures;
 pub mod held_out;
 mod noise_free;
+pub mod response;
 pub mod sigma;
 pub mod still;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::evidence::{Collector, ResponseEvidence};
 use super::noise_survey::{NoiseCells, NoiseSurvey};
 use super::runs::{Place, Runs};
 use super::warning::FitWarning;
@@ -30,6 +31,7 @@ pub struct ExposureSweep {
     /// Values in the central window of the previous frame, for the noise.
     previous: Option<Vec<f64>>,
     survey: NoiseSurvey,
+    collector: Collector,
 }
 
 /// Sums over the frames of one integration time.
@@ -67,6 +69,8 @@ pub struct ExposureCurve {
     pub noise_floor: Option<NoiseFloor>,
     /// Noise at the times up to half of the largest mean amplitude.
     pub noise: NoiseCells,
+    /// What the sweep offers for the response.
+    pub evidence: ResponseEvidence,
     /// What is odd about the recording.
     pub warnings: Vec<FitWarning>,
 }
@@ -86,6 +90,7 @@ impl ExposureSweep {
             motion: MotionWatch::default(),
             previous: None,
             survey: NoiseSurvey::new(),
+            collector: Collector::new(),
         }
     }
 
@@ -118,6 +123,7 @@ impl ExposureSweep {
         let time = self.times.entry(time_us.to_bits()).or_default();
         time.frames.push(sums);
         time.noise_dn.extend(noise);
+        self.collector.push(time_us, frame, place == Place::First);
         if place == Place::First {
             self.motion.push(time_us, frame);
         }
@@ -184,7 +190,8 @@ impl ExposureSweep {
         noise.up_to(nearly_linear_up_to(&samples));
         let frames_left_out = self.frames - self.used;
         let source = Source { recording: self.recording, frames_used: self.used, frames_left_out };
-        ExposureCurve { source, samples, saturated_share, noise_floor: floor, noise, warnings }
+        let evidence = self.collector.finish();
+        ExposureCurve { source, samples, saturated_share, noise_floor: floor, noise, evidence, warnings }
     }
 }
 

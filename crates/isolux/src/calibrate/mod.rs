@@ -1,13 +1,16 @@
 //! From recordings to a [`Calibration`]: measure sweeps frame by frame, then fit the terms they determine.
 
 mod distance_sweep;
+mod evidence;
 mod exposure_sweep;
 mod noise_survey;
+mod response;
 mod runs;
 mod warning;
 mod window;
 
 pub use distance_sweep::{DistanceSweep, ReferenceDecays};
+pub use evidence::ResponseEvidence;
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
 pub use noise_survey::{NoiseCells, NoiseSurvey};
 pub use warning::FitWarning;
@@ -31,8 +34,8 @@ pub struct CalibrateSettings {
     pub skip_frames: usize,
     /// Integration times to leave out, µs.
     pub exclude_time_us: Vec<f64>,
-    /// Modulation frequency of the distance sweeps, Hz, where it is known: the spline then allows for the aliased
-    /// harmonic.
+    /// Modulation frequency of the sweeps, Hz, where it is known: the spline then allows for the aliased harmonic, and
+    /// the response of the raw bins repairs the distance.
     pub modulation_frequency_hz: Option<f64>,
 }
 
@@ -152,6 +155,7 @@ pub fn fit(
     let mut warnings = Vec::new();
     if !exposure_curves.is_empty() {
         let lut = fit_lut(settings, &exposure_curves, &mut warnings)?;
+        calibration.terms.response = response::fit_response(settings, &exposure_curves, &lut, &mut warnings);
         calibration.terms.lut = Some(lut);
         let floors = exposure_curves.iter().filter_map(|curve| curve.noise_floor);
         calibration.noise_floor =

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::terms::cubic::{Decay, DecayUse, Scaling};
+use crate::terms::response::ResponseError;
 use crate::terms::spline::{SplineError, SplineUse};
 
 /// One finding about a recording or a fit, with its numbers.
@@ -128,6 +129,13 @@ pub enum FitWarning {
         /// Integration time, µs.
         integration_time_us: Option<f64>,
     },
+    /// A tier of the response that the recordings have the channels for, but do not determine.
+    NoTier {
+        /// The tier.
+        tier: &'static str,
+        /// Why.
+        reason: ResponseError,
+    },
     /// No spline beside the cubic.
     NoSpline {
         /// Why.
@@ -231,6 +239,9 @@ impl fmt::Display for FitWarning {
                 "distance sweep, {}: left out, it neither reaches the reference distance nor overlaps the others",
                 time(*integration_time_us)
             ),
+            Self::NoTier { tier, reason } => {
+                write!(f, "exposure sweep: no response by `{tier}`: {reason}")
+            }
             Self::NoSpline { reason } => write!(f, "distance sweep: no spline beside the cubic: {reason}"),
             Self::Outliers { integration_time_us, outliers, positions } => write!(
                 f,

@@ -3,6 +3,7 @@
 use crate::denoise::DenoiseRule;
 use crate::specular::SpecularRule;
 use crate::terms::NoiseModel;
+use crate::terms::response::ResponseTier;
 
 /// Which terms to use where no single step says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +21,8 @@ pub enum Method {
 pub enum TimeStep {
     /// The calibration's table.
     Lut,
+    /// The calibration's fill-level response, then `t_ref / t`.
+    Response,
     /// `t_ref / t`.
     Linear,
     /// Leave it in.
@@ -81,6 +84,8 @@ pub struct Choice {
     pub method: Method,
     /// Integration time.
     pub time: Option<TimeStep>,
+    /// Tier of the response; otherwise the best that calibration and recording allow.
+    pub response_tier: Option<ResponseTier>,
     /// Noise of the distance; otherwise it is left in.
     pub denoise: Option<DenoiseStep>,
     /// Distance.

@@ -2,6 +2,7 @@
 
 mod choice;
 mod kernel;
+mod linearise;
 mod merge;
 mod plan;
 mod report;
@@ -21,6 +22,7 @@ use crate::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
 use crate::terms::DistanceGain;
 use kernel::{BLOCK, Block};
+use linearise::{Linearised, Lineariser, Repaired};
 use plan::Plan;
 use sigma::Predictor;
 use time::TimeGain;
@@ -46,6 +48,7 @@ pub struct Standardized {
     pub sigma: Option<Plane<f32>>,
     quantiles: PositiveQuantiles,
     denoiser: Denoiser,
+    linearised: Linearised,
 }
 
 /// What happened to one frame.
@@ -83,6 +86,23 @@ pub enum StandardizeError {
     /// The distance that the plan needs is not there.
     #[error("distance found missing, a plane of metres expected: the distance step needs it")]
     DistanceMissing,
+    /// The channel by which the response tells the fill of a pixel is not there.
+    #[error("no {channel} found, one value for each pixel expected: the response's tier needs it")]
+    FillMissing {
+        /// The channel.
+        channel: &'static str,
+    },
+    /// The response's map is that of a scene of another shape.
+    #[error(
+        "the frame is {found}, {expected} expected, the shape of the scene that the response's tier `pixel` was \
+         fitted on: it holds for that scene alone"
+    )]
+    AnotherScene {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape of the map.
+        expected: Shape,
+    },
     /// The plan smooths over frames, and only one was given.
     #[error(
         "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \
@@ -101,6 +121,7 @@ impl Standardized {
             sigma: None,
             quantiles: PositiveQuantiles::new(),
             denoiser: Denoiser::default(),
+            linearised: Linearised::new(),
         }
     }
 
@@ -151,7 +172,9 @@ impl Standardizer {
         let mut needed = Channels::AMPLITUDE;
         needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
         needed.set(Channels::DISTANCE, self.plan.distance.is_some());
-        needed | self.plan.sigma.map_or(Channels::empty(), |sigma| sigma.needed)
+        needed
+            | self.plan.lineariser.as_ref().map_or(Channels::empty(), Lineariser::channels)
+            | self.plan.sigma.map_or(Channels::empty(), |sigma| sigma.needed)
     }
 
     /// Standardizes one frame into `out`; the frame itself stays as it is. Allocates only when the shape differs
@@ -223,8 +246,12 @@ impl Standardizer {
             out.sigma = None;
         }
         out.flags.values_mut().copy_from_slice(frame.flags.values());
+        let lineariser = self.plan.lineariser.as_ref();
+        let repaired = lineariser
+            .map(|lineariser| out.linearised.fill(lineariser, frame, out.flags.values_mut()))
+            .transpose()?;
         let time = time::gains(&self.plan.time, frame, out.amplitude.values_mut(), out.flags.values_mut())?;
-        self.scale(frame, denoised, time.gain, out)?;
+        self.scale(frame, denoised, repaired, time.gain, out)?;
         let specular_cutoff = self.plan.specular.and_then(|rule| out.limit(rule));
         Ok(FrameSummary {
             specular_cutoff,
@@ -239,6 +266,7 @@ impl Standardizer {
         &self,
         frame: &Frame,
         denoised: Option<Denoised<'_>>,
+        repaired: Option<Repaired>,
         gain: TimeGain,
         out: &mut Standardized,
     ) -> Result<(), StandardizeError> {
@@ -250,7 +278,11 @@ impl Standardizer {
             let scratch = sigma::plane(&mut out.sigma, frame.shape()).values_mut();
             Predictor::new(plan, frame, law, &mut out.denoiser, scratch)
         });
-        let distances = match (&self.plan.distance, denoised, &frame.distance_m, self.plan.denoise) {
+        let own_distance_m = match repaired {
+            Some(Repaired::AmplitudeAndDistance) => Some(out.linearised.distance_m()),
+            _ => frame.distance_m.as_ref(),
+        };
+        let distances = match (&self.plan.distance, denoised, own_distance_m, self.plan.denoise) {
             (None, ..) => None,
             (Some(_), Some((distance_m, left)), ..) => {
                 predictor =
@@ -271,7 +303,8 @@ impl Standardizer {
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
         }
-        let blocks = frame.amplitude.values().chunks(BLOCK).enumerate();
+        let amplitudes = repaired.map_or(frame.amplitude.values(), |_| out.linearised.amplitude());
+        let blocks = amplitudes.chunks(BLOCK).enumerate();
         let outputs =
             out.amplitude.values_mut().chunks_mut(BLOCK).zip(out.flags.values_mut().chunks_mut(BLOCK));
         for ((index, amplitude), (values, flags)) in blocks.zip(outputs) {

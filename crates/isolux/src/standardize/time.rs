@@ -85,11 +85,16 @@ fn answer(plan: &TimePlan, time_us: f64) -> Answer {
         TimePlan::Linear { reference_us } => {
             (linear::multiplier(time_us, *reference_us) as f32, PixelFlags::empty())
         }
-        TimePlan::Lut(lut) => match lut.at(time_us) {
-            LutAnswer::Inside(gain) => (gain as f32, PixelFlags::empty()),
-            LutAnswer::Below(gain) => (gain as f32, PixelFlags::TIME_OUT_OF_RANGE),
-            LutAnswer::Refused => (f32::NAN, PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE),
-        },
+        TimePlan::Lut(lut) => flagged(lut.at(time_us)),
+        TimePlan::Scalar { response, reference_us } => flagged(response.at(time_us, *reference_us)),
+    }
+}
+
+fn flagged(answer: LutAnswer) -> Answer {
+    match answer {
+        LutAnswer::Inside(gain) => (gain as f32, PixelFlags::empty()),
+        LutAnswer::Below(gain) => (gain as f32, PixelFlags::TIME_OUT_OF_RANGE),
+        LutAnswer::Refused => (f32::NAN, PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE),
     }
 }
 

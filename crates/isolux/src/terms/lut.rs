@@ -157,6 +157,17 @@ impl Lut {
         }
     }
 
+    /// The mean curve behind the table, 1 at the reference time.
+    #[must_use]
+    pub fn samples(&self) -> Vec<ExposureSample> {
+        let sample = |(&integration_time_us, multiplier): (&f64, &f64)| ExposureSample {
+            integration_time_us,
+            mean_amplitude_dn: 1.0 / multiplier,
+            frame_spread: 0.0,
+        };
+        self.integration_time_us.iter().zip(&self.multiplier).map(sample).collect()
+    }
+
     /// Refuses parameters that no fit can have written.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ pub mod eq5;
 pub mod linear;
 pub mod lut;
 pub mod noise;
+pub mod response;
 pub mod spline;
 pub mod square;
 
@@ -16,6 +17,7 @@ pub use cubic::Cubic;
 pub use lut::Lut;
 pub use noise::{Noise, NoiseModel};
 pub use polynomial::DistanceGain;
+pub use response::Response;
 pub use spline::Spline;
 pub use table::DistanceTable;
 

@@ -3,7 +3,7 @@
 use isolux::Calibration;
 use isolux::calibrate::FitReport;
 use isolux::terms::cubic::Scaling;
-use isolux::terms::{FitQuality, Lut, Spline};
+use isolux::terms::{FitQuality, Lut, Response, Spline};
 
 use crate::console::table;
 
@@ -15,6 +15,10 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         text.push(lut_table(lut));
         let [min, max] = lut.valid_integration_time_us;
         text.push(format!("valid from {min} to {max} µs (peak of the mean amplitude)"));
+    }
+    if let Some(response) = &calibration.terms.response {
+        text.push("\nresponse, compression by the fill of each pixel, by tier of evidence:".to_owned());
+        text.push(response_table(response));
     }
     if let Some(cubic) = &calibration.terms.cubic {
         let [c0, c1, c2, c3] = cubic.coefficients;
@@ -67,6 +71,57 @@ fn lut_table(lut: &Lut) -> String {
     rows.extend(
         shown.map(|i| vec![format!("  {}", lut.integration_time_us[i]), format!("{:.4}", lut.multiplier[i])]),
     );
+    table(&rows)
+}
+
+/// One row for each tier.
+fn response_table(response: &Response) -> String {
+    let mut rows =
+        vec![["  tier", "full well", "softness", "valid up to", "quality"].map(str::to_owned).to_vec()];
+    let mut row = |tier: &str, full: String, softness: Option<f64>, valid: String, fit: &FitQuality| {
+        let softness = softness.map_or_else(|| "-".to_owned(), |softness| format!("{softness:.2}"));
+        rows.push(vec![format!("  {tier}"), full, softness, valid, quality(fit, "points")]);
+    };
+    let dn = |value: f64| format!("{value:.0} DN");
+    if let Some(tier) = &response.scalar {
+        let full = format!("after {:.0} µs", tier.full_well_time_us);
+        let valid = format!("{} µs", tier.valid_integration_time_us[1]);
+        row("scalar", full, Some(tier.softness), valid, &tier.fit);
+    }
+    if let Some(tier) = &response.amplitude {
+        let full =
+            format!("curve, bends at {} amplitudes", tier.increment.iter().filter(|c| **c > 0.0).count());
+        row("amplitude", full, None, dn(tier.largest_dn), &tier.fit);
+    }
+    if let Some(tier) = &response.pixel {
+        let taus = tier.full_well_time_us.iter().flatten();
+        let full = format!("map, {} of {} pixels compressed", taus.flatten().count(), tier.shape().pixels());
+        row(
+            "pixel (that scene)",
+            full,
+            Some(tier.softness),
+            format!("fill {:.2}", tier.largest_fill),
+            &tier.fit,
+        );
+    }
+    if let Some(tier) = &response.intensity {
+        row(
+            "intensity",
+            dn(tier.well.full_well_dn),
+            Some(tier.well.softness),
+            dn(tier.largest_dn),
+            &tier.fit,
+        );
+    }
+    if let Some(tier) = &response.phase_samples {
+        row(
+            "phase_samples",
+            dn(tier.well.full_well_dn),
+            Some(tier.well.softness),
+            dn(tier.largest_dn),
+            &tier.fit,
+        );
+    }
     table(&rows)
 }
 

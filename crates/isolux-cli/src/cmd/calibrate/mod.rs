@@ -47,8 +47,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     console::print(format!("written: {}", args.output.display()))
 }
 
-/// Measures the sweeps and fits what they determine. Distance sweeps tell the modulation frequency, unless the
-/// settings do.
+/// Measures the sweeps and fits what they determine. They tell the modulation frequency, unless the settings do.
 pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
@@ -70,7 +69,8 @@ pub(crate) fn fit(
     let camera = camera.or_else(|| cameras.into_iter().next());
     let mut settings = settings.clone();
     if settings.modulation_frequency_hz.is_none() {
-        settings.modulation_frequency_hz = modulation_frequency_hz(distance_sweeps)?;
+        let told_by = if distance_sweeps.is_empty() { exposure_sweeps } else { distance_sweeps };
+        settings.modulation_frequency_hz = modulation_frequency_hz(told_by)?;
     }
     calibrate::fit(&settings, camera, curves, decays).map_err(|error| {
         error.warnings().iter().for_each(console::warn);
@@ -85,7 +85,7 @@ pub(crate) fn fit(
     })
 }
 
-/// The frequency that all distance sweeps name; one that does not leaves it open.
+/// The frequency that all these sweeps name; one that does not leaves it open.
 fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     let mut frequencies = Vec::new();
     for path in paths {
@@ -94,13 +94,16 @@ fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     frequencies.dedup();
     if frequencies.len() > 1 {
         console::warn(
-            "the distance sweeps name different modulation frequencies, or some of them none: the spline goes \
-             without the harmonic",
+            "the sweeps name different modulation frequencies, or some of them none: the spline goes without the \
+             harmonic, and the response repairs no distance",
         );
         return Ok(None);
     }
     Ok(frequencies.first().copied().flatten())
 }
+
+/// What tells the fill of a pixel, where it is recorded.
+const RESPONSE_CHANNELS: Channels = Channels::INTENSITY.union(Channels::PHASE_SAMPLES);
 
 fn exposure_curve(
     path: &Path,
@@ -108,7 +111,7 @@ fn exposure_curve(
     cameras: &mut Vec<String>,
 ) -> Outcome<ExposureCurve> {
     let mut sweep = ExposureSweep::new(path.display().to_string(), settings);
-    measure(path, "exposure sweep", cameras, |frame| sweep.push(frame))?;
+    measure(path, "exposure sweep", RESPONSE_CHANNELS, cameras, |frame| sweep.push(frame))?;
     Ok(sweep.finish())
 }
 
@@ -118,19 +121,20 @@ fn reference_decays(
     cameras: &mut Vec<String>,
 ) -> Outcome<ReferenceDecays> {
     let mut sweep = DistanceSweep::new(path.display().to_string(), settings);
-    measure(path, "distance sweep", cameras, |frame| sweep.push(frame))?;
+    measure(path, "distance sweep", Channels::empty(), cameras, |frame| sweep.push(frame))?;
     Ok(sweep.finish())
 }
 
 fn measure(
     path: &Path,
     what: &str,
+    besides: Channels,
     cameras: &mut Vec<String>,
     mut push: impl FnMut(&Frame) -> Result<(), CalibrateError>,
 ) -> Outcome {
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::INTENSITY;
+    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
     frames::for_each(&mut *recording, wanted, what, |_, frame| {
         push(frame).map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
     })

@@ -30,8 +30,8 @@ const SIGMA: &str = "sigma";
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
 /// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch; up
-/// to four planes of the denoising rules.
-const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4;
+/// to four planes of the denoising rules; intensity and raw bins, linear amplitude and distance of the response.
+const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4 + 5 * 4 + 2 * 4;
 /// Intensity, result, and what denoising leaves of the distance's noise.
 const SIGMA_BYTES_PER_PIXEL: usize = 4 + 4 + 4;
 

@@ -2,16 +2,19 @@
 
 mod denoise;
 mod distance;
+mod response;
 mod sigma;
 mod specular;
 mod time;
 
 use super::choice::{Choice, Method};
+use super::linearise::Lineariser;
 use super::report::{AppliedStep, Note, PlanError};
 use crate::calibration::Calibration;
 use crate::denoise::DenoiseRule;
 use crate::frame::Channels;
 use crate::specular::SpecularRule;
+use crate::terms::response::ScalarResponse;
 use crate::terms::{DistanceGain, DistanceTable, Lut};
 
 pub(in crate::standardize) use sigma::SigmaPlan;
@@ -20,6 +23,7 @@ pub(in crate::standardize) use sigma::SigmaPlan;
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::standardize) enum TimePlan {
     Lut(Lut),
+    Scalar { response: ScalarResponse, reference_us: f64 },
     Linear { reference_us: f64 },
     None,
 }
@@ -27,6 +31,8 @@ pub(in crate::standardize) enum TimePlan {
 /// Everything that depends on the calibration alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::standardize) struct Plan {
+    /// `None` takes the amplitude as delivered.
+    pub(in crate::standardize) lineariser: Option<Lineariser>,
     pub(in crate::standardize) time: TimePlan,
     /// `None` scales by the distance as delivered.
     pub(in crate::standardize) denoise: Option<DenoiseRule>,
@@ -56,7 +62,7 @@ impl Plan {
             calibration.check()?;
         }
         let mut planner = Planner { choice, calibration, available, steps: Vec::new(), notes: Vec::new() };
-        let time = planner.time()?;
+        let (time, lineariser) = planner.time()?;
         let (distance, distance_table) = planner.distance()?.unzip();
         let textbook: Vec<&str> = planner.steps.iter().map(|step| step.term).collect();
         if calibration.is_none() && !textbook.is_empty() {
@@ -67,6 +73,7 @@ impl Plan {
         let sigma = planner.sigma(distance.is_some())?;
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
         Ok(Self {
+            lineariser,
             time,
             denoise,
             distance,

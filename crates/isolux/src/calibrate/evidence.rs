@@ -1,0 +1,167 @@
+//! What an exposure sweep offers for the response: means of every pixel at each time, and of some pixels all channels.
+
+use crate::flags::PixelFlags;
+use crate::frame::Frame;
+use crate::plane::Shape;
+use crate::terms::response::{AmplitudeStack, PixelMeans, PixelSeries};
+
+/// The evidence of one still scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseEvidence {
+    /// Mean amplitudes of all pixels, NaN where one was invalid or saturated in any frame. Of a long sweep every
+    /// second time, or fewer, as memory allows.
+    pub stack: AmplitudeStack,
+    /// Everything that pixels spread over the image delivered.
+    pub pixels: Vec<PixelSeries>,
+}
+
+/// Amplitudes that the stack may hold, 128 MiB.
+const STACK_VALUES: usize = 32 << 20;
+/// Pixels of which all channels are kept.
+const SAMPLED_PIXELS: usize = 256;
+
+/// Collects the evidence frame by frame. A run of frames of one time is one image.
+#[derive(Clone, Debug)]
+pub(super) struct Collector {
+    stack: AmplitudeStack,
+    pixels: Vec<PixelSeries>,
+    /// Every `stride`-th run enters the stack.
+    stride: usize,
+    runs: usize,
+    run: Option<Run>,
+}
+
+/// Sums over the frames of the run at hand.
+#[derive(Clone, Debug)]
+struct Run {
+    integration_time_us: f64,
+    frames: f64,
+    /// NaN once a frame had no value.
+    amplitudes: Vec<f64>,
+    sampled: Vec<PixelMeans>,
+}
+
+impl Collector {
+    pub(super) fn new() -> Self {
+        let stack = AmplitudeStack::new(Shape::new(0, 0));
+        Self { stack, pixels: Vec::new(), stride: 1, runs: 0, run: None }
+    }
+
+    /// Takes a frame; `first` opens a run.
+    pub(super) fn push(&mut self, integration_time_us: f64, frame: &Frame, first: bool) {
+        let pixels = frame.shape().pixels();
+        if first || self.run.as_ref().is_none_or(|run| run.amplitudes.len() != pixels) {
+            self.close_run();
+            if self.stack.shape() != frame.shape() {
+                // A recording's frames are of one shape; a core user's need not be.
+                self.stack = AmplitudeStack::new(frame.shape());
+                self.pixels = vec![PixelSeries::new(); sampled(pixels).count()];
+            }
+            self.run = Some(Run::new(integration_time_us, pixels));
+        }
+        if let Some(run) = &mut self.run {
+            run.add(frame);
+        }
+    }
+
+    fn close_run(&mut self) {
+        let Some(run) = self.run.take() else { return };
+        let frames = run.frames;
+        if self.runs.is_multiple_of(self.stride) {
+            let means = run.amplitudes.iter().map(|sum| (sum / frames) as f32);
+            self.stack.push(run.integration_time_us, means);
+            if self.stack.integration_time_us().len() * self.stack.shape().pixels() > STACK_VALUES {
+                self.stack.thin_out();
+                self.stride *= 2;
+            }
+        }
+        self.runs += 1;
+        for (series, sums) in self.pixels.iter_mut().zip(run.sampled) {
+            series.push(PixelMeans {
+                amplitude_dn: sums.amplitude_dn / frames,
+                intensity_dn: sums.intensity_dn / frames,
+                phase_samples_dn: sums.phase_samples_dn.map(|sum| sum / frames),
+                ..sums
+            });
+        }
+    }
+
+    pub(super) fn finish(mut self) -> ResponseEvidence {
+        self.close_run();
+        for series in &mut self.pixels {
+            series.sort_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
+        }
+        ResponseEvidence { stack: self.stack, pixels: self.pixels }
+    }
+}
+
+impl Run {
+    fn new(integration_time_us: f64, pixels: usize) -> Self {
+        let nothing = PixelMeans {
+            integration_time_us,
+            amplitude_dn: 0.0,
+            intensity_dn: 0.0,
+            phase_samples_dn: [0.0; 4],
+            unusable: false,
+        };
+        let sampled = vec![nothing; sampled(pixels).count()];
+        Self { integration_time_us, frames: 0.0, amplitudes: vec![0.0; pixels], sampled }
+    }
+
+    fn add(&mut self, frame: &Frame) {
+        let unusable = PixelFlags::INVALID | PixelFlags::SATURATED;
+        self.frames += 1.0;
+        let values = frame.amplitude.values().iter().zip(frame.flags.values());
+        for (sum, (&amplitude, flags)) in self.amplitudes.iter_mut().zip(values) {
+            *sum += if flags.intersects(unusable) { f64::NAN } else { f64::from(amplitude) };
+        }
+        let pixels = frame.shape().pixels();
+        for (sums, index) in self.sampled.iter_mut().zip(sampled(pixels)) {
+            let flags = frame.flags.values()[index];
+            // A code is no amplitude, but the 0 of a collapsed pixel is one.
+            let code = flags.contains(unusable);
+            let amplitude = frame.amplitude.values()[index];
+            sums.amplitude_dn += if code { f64::NAN } else { f64::from(amplitude) };
+            sums.intensity_dn += frame.intensity.as_ref().map_or(f64::NAN, |i| f64::from(i.values()[index]));
+            for (bin, sum) in sums.phase_samples_dn.iter_mut().enumerate() {
+                let bins = frame.phase_samples.as_ref();
+                *sum += bins.map_or(f64::NAN, |bins| f64::from(bins[bin].values()[index]));
+            }
+            sums.unusable |= flags.intersects(unusable);
+        }
+    }
+}
+
+/// Indices of the sampled pixels: evenly spread, and by a step that no usual image width is a multiple of.
+fn sampled(pixels: usize) -> impl Iterator<Item = usize> {
+    let step = (pixels / SAMPLED_PIXELS).max(1) | 1;
+    (step / 2..pixels).step_by(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plane::Plane;
+
+    #[test]
+    fn a_run_is_one_image_and_what_is_invalid_once_has_no_mean() {
+        let mut collector = Collector::new();
+        for (time_us, first, values) in
+            [(1.0, true, [2.0, 5.0]), (1.0, false, [4.0, 0.0]), (2.0, true, [6.0, 7.0])]
+        {
+            let mut frame = Frame::new(Shape::new(1, 2));
+            frame.amplitude.values_mut().copy_from_slice(&values);
+            frame.intensity = Some(Plane::filled(Shape::new(1, 2), 9.0));
+            frame.flag_amplitude(None);
+            collector.push(time_us, &frame, first);
+        }
+        let evidence = collector.finish();
+        let mut expected = AmplitudeStack::new(Shape::new(1, 2));
+        expected.push(1.0, [3.0, f32::NAN]);
+        expected.push(2.0, [6.0, 7.0]);
+        assert_eq!(format!("{:?}", evidence.stack), format!("{expected:?}"));
+        let means = evidence.pixels[1][0];
+        assert_eq!((means.amplitude_dn, means.intensity_dn, means.unusable), (2.5, 9.0, true));
+        assert!(means.phase_samples_dn[0].is_nan());
+    }
+}

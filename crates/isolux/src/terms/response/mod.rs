@@ -1,0 +1,179 @@
+//! `response`: what is left of the amplitude as the pixel's well fills, with up to five tiers of evidence.
+//!
+//! A pixel compresses by its total charge, ambient light included, not by its amplitude:
+//! `A_lin = A / f′(x)`, x its linear well fill (eq. 3 of Stürmer, Penne and Hornegger 2008; methods, section 2). How
+//! well x is known depends on what the camera delivers; each tier is fitted where an exposure sweep offers its
+//! evidence, and each stands alone.
+//!
+//! | tier | evidence | takes out |
+//! |---|---|---|
+//! | [`ScalarResponse`] | mean of the image | what a lookup table does |
+//! | [`AmplitudeResponse`] | amplitude of the pixel | compression without ambient light |
+//! | [`PixelResponse`] | static scene at several times | compression of each pixel of that scene |
+//! | [`IntensityResponse`] | DC image | compression by any light |
+//! | [`PhaseSampleResponse`] | the four raw bins | the same, without approximation, and that of the distance |
+//!
+//! The gauge: a linearised amplitude is that of a pixel without a full well. Times `t_ref / t` it is what such a
+//! pixel would deliver at the reference time; the multiplier of a pixel that is compressed there is not 1.
+
+mod amplitude;
+mod evidence;
+mod fill_time;
+mod full_well;
+mod intensity;
+mod phase_samples;
+mod pixel;
+mod rows;
+mod scalar;
+mod search;
+mod solve;
+mod still;
+mod well;
+
+use serde::{Deserialize, Serialize};
+
+pub use amplitude::AmplitudeResponse;
+pub(crate) use amplitude::PlannedAmplitude;
+pub use evidence::{AmplitudeStack, PixelMeans, PixelSeries};
+pub use full_well::FullWell;
+pub use intensity::IntensityResponse;
+pub(crate) use intensity::PlannedIntensity;
+pub use phase_samples::PhaseSampleResponse;
+pub(crate) use phase_samples::PlannedBins;
+pub use pixel::PixelResponse;
+pub(crate) use pixel::PlannedPixels;
+pub use scalar::ScalarResponse;
+pub use well::SoftWell;
+
+use super::{ParameterError, require};
+use crate::frame::Channels;
+
+/// Everything that is known of the response, tier by tier.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Response {
+    /// Version of this term's parameters.
+    pub version: u32,
+    /// From the mean of the image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scalar: Option<ScalarResponse>,
+    /// From the amplitude of the pixel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<AmplitudeResponse>,
+    /// Of one static scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixel: Option<PixelResponse>,
+    /// From intensity and amplitude.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intensity: Option<IntensityResponse>,
+    /// From the raw bins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase_samples: Option<PhaseSampleResponse>,
+    /// What the user should know or record better.
+    pub warnings: Vec<String>,
+}
+
+/// Why a tier could not be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResponseError {
+    /// Too few integration times.
+    #[error(
+        "{found} usable integration times found, at least {expected} expected: vary the time in the sweep"
+    )]
+    TooFewTimes {
+        /// Number found.
+        found: usize,
+        /// Number that the tier needs.
+        expected: usize,
+    },
+    /// The sweep does not determine the well.
+    #[error(
+        "hardly any pixel is compressed, so that the full well is not determined: extend the sweep to longer times, \
+         until the brightest pixels saturate"
+    )]
+    NoCompression,
+    /// A map of the image would not fit into a calibration file.
+    #[error(
+        "{pixels} pixels found, at most {} expected: a map of them is too large for a calibration file",
+        PixelResponse::MOST_PIXELS
+    )]
+    ImageTooLarge {
+        /// Pixels of the image.
+        pixels: usize,
+    },
+}
+
+/// How a recording tells the fill of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ResponseTier {
+    /// By the integration time alone.
+    Scalar,
+    /// By the amplitude itself.
+    Amplitude,
+    /// By the integration time, for the static scene of the sweep. Never chosen unless asked for: nothing in a frame
+    /// tells that it shows that scene.
+    Pixel,
+    /// By intensity and amplitude.
+    Intensity,
+    /// By the raw bins.
+    PhaseSamples,
+}
+
+impl ResponseTier {
+    /// Its name, in the calibration file and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Amplitude => "amplitude",
+            Self::Pixel => "pixel",
+            Self::Intensity => "intensity",
+            Self::PhaseSamples => "phase_samples",
+        }
+    }
+
+    /// The channels that it needs besides amplitude and integration time.
+    #[must_use]
+    pub fn channels(self) -> Channels {
+        match self {
+            Self::Scalar | Self::Amplitude | Self::Pixel => Channels::empty(),
+            Self::Intensity => Channels::INTENSITY,
+            Self::PhaseSamples => Channels::PHASE_SAMPLES,
+        }
+    }
+}
+
+impl Response {
+    /// Parameter version that this library writes.
+    pub const VERSION: u32 = 1;
+
+    /// The tiers that were fitted and hold for any scene, the best first.
+    pub fn tiers(&self) -> impl Iterator<Item = ResponseTier> {
+        let tiers = [
+            self.phase_samples.as_ref().map(|_| ResponseTier::PhaseSamples),
+            self.intensity.as_ref().map(|_| ResponseTier::Intensity),
+            self.amplitude.as_ref().map(|_| ResponseTier::Amplitude),
+            self.scalar.as_ref().map(|_| ResponseTier::Scalar),
+        ];
+        tiers.into_iter().flatten()
+    }
+
+    /// Refuses parameters that no fit can have written.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the field.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        require(self.version == Self::VERSION, "response.version", self.version, "1")?;
+        self.scalar.as_ref().map_or(Ok(()), ScalarResponse::check)?;
+        self.amplitude.as_ref().map_or(Ok(()), AmplitudeResponse::check)?;
+        self.pixel.as_ref().map_or(Ok(()), PixelResponse::check)?;
+        self.intensity.as_ref().map_or(Ok(()), IntensityResponse::check)?;
+        self.phase_samples.as_ref().map_or(Ok(()), PhaseSampleResponse::check)
+    }
+}
+
+fn check_softness(field: &'static str, softness: f64) -> Result<(), ParameterError> {
+    require(SoftWell::SOFTNESS_LIMITS.contains(&softness), field, softness, "a softness from 1 to 16")
+}
