@@ -120,7 +120,7 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none\n  \
     isolux standardize desk -c CAMERA.json -o out --denoise wiener\n  \
-    isolux standardize desk -c CAMERA.json -o out --time response --response-tier intensity")]
+    isolux standardize desk -c CAMERA.json -o out --time response")]
 pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]
