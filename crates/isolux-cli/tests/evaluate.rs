@@ -44,7 +44,7 @@ fn the_table_and_the_page_show_all_chains() {
     let columns: Vec<&str> = header.split_whitespace().collect();
     assert_eq!(columns, ["figure", "better", "raw", "textbook", "paper", "chosen"]);
     for steps in
-        ["textbook: linear, square", "paper: lut, cubic, histogram", "chosen: lut, spline, histogram"]
+        ["textbook: linear, square", "paper: lut, cubic, histogram", "chosen: response, spline, histogram"]
     {
         assert!(run.stdout.lines().any(|line| line == steps), "{steps}: {}", run.stdout);
     }

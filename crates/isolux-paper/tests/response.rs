@@ -1,12 +1,7 @@
 //! The response beside the paper's table, on unseen cameras and exposures. The figures:
 //! `cargo test --release -p isolux-paper --test response -- --nocapture`.
-#![allow(
-    clippy::print_stdout,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "tests fail by panicking"
-)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
+#![allow(clippy::print_stdout, reason = "the figures are read off this test")]
 
 use isolux_paper::beyond::response::{FittedOn, Light, ResponseFigure, measure};
 
