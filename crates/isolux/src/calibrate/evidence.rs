@@ -15,8 +15,8 @@ pub struct ResponseEvidence {
     pub pixels: Vec<PixelSeries>,
 }
 
-/// Amplitudes that the stack may hold, 128 MiB.
-const STACK_VALUES: usize = 32 << 20;
+/// Amplitudes that the stack may hold, 64 MiB; while it grows, its memory is three times that for a moment.
+const STACK_VALUES: usize = 16 << 20;
 /// Pixels of which all channels are kept.
 const SAMPLED_PIXELS: usize = 256;
 
