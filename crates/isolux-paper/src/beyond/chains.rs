@@ -28,12 +28,14 @@ pub const EQ5: Chain = chain("eq. 5, linear time", TimeStep::Linear, DistanceSte
 /// The paper's.
 pub const PAPER: Chain = chain("the paper (lut, cubic)", TimeStep::Lut, DistanceStep::Cubic);
 /// Ours.
-pub const BEST: Chain = Chain {
+pub const LUTB: Chain = Chain {
     denoise: DenoiseStep::Smooth(DenoiseRule::Wiener),
-    ..chain("isolux (lut, wiener, spline)", TimeStep::Lut, DistanceStep::Spline)
+    ..chain("lut, wiener, spline", TimeStep::Lut, DistanceStep::Spline)
+};
+pub const BEST: Chain = Chain {denoise: DenoiseStep::Smooth(DenoiseRule::Wiener), ..chain("isolux (response, wiener, spline)", TimeStep::Response, DistanceStep::Spline)
 };
 /// Everybody.
-pub const ALL: [Chain; 5] = [RAW, EQ5, TEXTBOOK, PAPER, BEST];
+pub const ALL: [Chain; 6] = [RAW, EQ5, TEXTBOOK, PAPER, LUTB, BEST];
 
 impl Chain {
     /// Plans the chain for frames of a simulated camera.
@@ -48,7 +50,7 @@ impl Chain {
             specular: Some(SpecularStep::None),
             ..Choice::default()
         };
-        let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+        let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::INTENSITY | Channels::PHASE_SAMPLES;
         Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
     }
 }

@@ -2,7 +2,8 @@
 //! afterwards are other frames than those of the fit.
 
 use isolux::calibrate::{self, CalibrateSettings, DistanceSweep, ExposureSweep};
-use isolux::{Calibration, Frame};
+use isolux::standardize::FrameLineariser;
+use isolux::{Calibration, Channels, Frame};
 use isolux_camera::scene::run::RegisterRange;
 use isolux_camera::{CameraModel, Scene, Simulation};
 
@@ -40,13 +41,28 @@ impl HeldOut {
         for_each(&Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?, |_, simulated| {
             Ok(wall.push(&simulated.frame)?)
         })?;
+        let name = Some(model.name.clone());
+        let exposure = vec![wall.finish()];
+        let (first, _) = calibrate::fit(&settings, name.clone(), exposure.clone(), Vec::new())?;
+        let channels = Channels::PHASE_SAMPLES | Channels::INTENSITY;
+        let mut lineariser = first.terms.response.as_ref().and_then(|r| FrameLineariser::new(r, channels));
         let mut board = DistanceSweep::new("board-distances", &settings);
+        let mut linear = DistanceSweep::new("board-distances", &settings);
         let scene = Scene::builtin("board-distances")?;
         for_each(&Simulation::new(cropped(&model), scene, FITTED)?, |_, simulated| {
-            Ok(board.push(&simulated.frame)?)
+            board.push(&simulated.frame)?;
+            if let Some(lineariser) = &mut lineariser {
+                let mut frame = simulated.frame.clone();
+                lineariser.linearise(&mut frame)?;
+                linear.push(&frame)?;
+            }
+            Ok(())
         })?;
-        let name = Some(model.name.clone());
-        let (calibration, _) = calibrate::fit(&settings, name, vec![wall.finish()], vec![board.finish()])?;
+        let (mut calibration, _) = calibrate::fit(&settings, name, exposure, vec![board.finish()])?;
+        let (lin, rep) = calibrate::fit(&settings, None, Vec::new(), vec![linear.finish()])?;
+        for (d,u) in &rep.decays { eprintln!("{:?} {} {:?}", d.integration_time_us, d.points.len(), u); }
+        eprintln!("{:?} {:?}", lin.terms.spline.as_ref().map(|s| s.fit.clone()), calibration.terms.spline.as_ref().map(|s| s.fit.clone()));
+        calibration.terms.spline = lin.terms.spline;
         Ok(Self { model, calibration })
     }
 }

@@ -2,6 +2,7 @@
 
 mod choice;
 mod kernel;
+mod linear_frame;
 mod linearise;
 mod merge;
 mod plan;
@@ -10,6 +11,7 @@ mod sigma;
 mod time;
 
 pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SigmaStep, SpecularStep, TimeStep};
+pub use linear_frame::FrameLineariser;
 pub use merge::{BracketMerge, MergeError};
 pub use report::{AppliedStep, Note, PlanError};
 
