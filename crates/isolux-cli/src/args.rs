@@ -121,12 +121,8 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none\n  \
     isolux standardize desk -c CAMERA.json -o out --denoise wiener\n  \
-<<<<<<< HEAD
-    isolux standardize desk -c CAMERA.json -o out --time response --response-tier intensity\n  \
-    isolux standardize brackets -c CAMERA.json -o merged --merge-bracket")]
-=======
-    isolux standardize desk -c CAMERA.json -o out --time response")]
->>>>>>> response
+    isolux standardize desk -c CAMERA.json -o out --time response\n  \
+    isolux standardize desk -o out --read-noise-dn 4 --merge-bracket")]
 pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]

@@ -104,6 +104,7 @@ impl Rivals {
 /// Whether a chain without a step for highlights scales like the chosen one, or is the chosen one.
 fn does_the_same(rival: &Standardizer, chosen: &Standardizer) -> bool {
     let limits = rival.steps().iter().any(|step| step.effect == "specular");
-    let scaling = chosen.steps().iter().filter(|step| limits || step.effect != "specular");
+    let scales = |effect: &str| effect != "sigma" && (limits || effect != "specular");
+    let scaling = chosen.steps().iter().filter(|step| scales(step.effect));
     rival.steps().iter().eq(scaling)
 }

@@ -97,7 +97,7 @@ fn json_is_for_programs() {
     assert_eq!(info["integration_times_us"].as_array().unwrap().len(), 4);
     let standardized = sandbox.run("standardize desk -c CAMERA.json -o out --json").json();
     assert_eq!(standardized["summary"]["frames"], 4);
-    assert_eq!(standardized["steps"].as_array().unwrap().len(), 3);
+    assert_eq!(standardized["steps"].as_array().unwrap().len(), 4);
     let evaluated = sandbox.run("evaluate desk -c CAMERA.json --json").json();
     assert!(evaluated["comparison"].is_object() || evaluated["comparison"].is_array());
     let calibrated = sandbox.run("calibrate --exposure-sweep wall -o again.json --json").json();

@@ -23,8 +23,9 @@ fn the_rivals_stand_as_when_they_are_chosen_alone() {
     let names: Vec<_> = all["beside"].as_array().unwrap().iter().map(|rival| rival["name"].clone()).collect();
     assert_eq!(names, ["textbook", "paper"]);
     let alone = |options: &str| {
-        let json =
-            sandbox.run(&format!("evaluate patches-smoke -c CAMERA.json --alone --json {options}")).json();
+        let json = sandbox
+            .run(&format!("evaluate patches-smoke -c CAMERA.json --alone --sigma off --json {options}"))
+            .json();
         assert_eq!(json["beside"].as_array().unwrap().len(), 0);
         json["comparison"]["after"].clone()
     };
@@ -43,9 +44,11 @@ fn the_table_and_the_page_show_all_chains() {
     let header = run.stdout.lines().nth(1).unwrap();
     let columns: Vec<&str> = header.split_whitespace().collect();
     assert_eq!(columns, ["figure", "better", "raw", "textbook", "paper", "chosen"]);
-    for steps in
-        ["textbook: linear, square", "paper: lut, cubic, histogram", "chosen: response, spline, histogram"]
-    {
+    for steps in [
+        "textbook: linear, square",
+        "paper: lut, cubic, histogram",
+        "chosen: response, spline, histogram, noise",
+    ] {
         assert!(run.stdout.lines().any(|line| line == steps), "{steps}: {}", run.stdout);
     }
     assert!(std::fs::read_to_string(sandbox.join("page.html")).unwrap().contains("id=\"recording-beside\""));

@@ -67,7 +67,7 @@ pub struct ExposureCurve {
     pub saturated_share: Vec<f64>,
     /// Noise at the shortest time, where a run has two frames.
     pub noise_floor: Option<NoiseFloor>,
-    /// Noise at the times up to half of the largest mean amplitude.
+    /// Noise at the times up to half of the largest mean amplitude; only that of repeated frames makes a term.
     pub noise: NoiseCells,
     /// What the sweep offers for the response.
     pub evidence: ResponseEvidence,

@@ -161,8 +161,9 @@ pub fn fit(
         calibration.noise_floor =
             floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
         let sources = exposure_curves.iter().map(|curve| curve.source.clone()).collect();
-        let cells = NoiseCells::merged(exposure_curves.iter().map(|curve| &curve.noise));
-        calibration.terms.noise = cells.fit(sources);
+        // A wall's texture would pass for noise.
+        let repeated = exposure_curves.iter().map(|curve| &curve.noise).filter(|noise| !noise.spatial);
+        calibration.terms.noise = NoiseCells::merged(repeated).fit(sources);
     }
     if calibration.terms.lut.is_none() {
         // Nothing says what the amplitudes of another time would be.
