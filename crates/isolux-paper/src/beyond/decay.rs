@@ -41,7 +41,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<Vec<Decay>, Paper
     }
     let simulation = Simulation::new(cropped(&held_out.model), scene, MEASURED)?;
     let standardizers: Vec<Standardizer> =
-        chains.iter().map(|chain| chain.plan(&held_out.calibration)).collect::<Result<_, _>>()?;
+        chains.iter().map(|chain| chain.plan(held_out)).collect::<Result<_, _>>()?;
     let mut out = Standardized::new(simulation.shape());
     // Keyed by pose and time; for each chain the sum and number of the frames' means.
     let mut positions: BTreeMap<(usize, u64), Vec<[f64; 2]>> = BTreeMap::new();

@@ -49,7 +49,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
     }
     let simulation = Simulation::new(held_out.model.clone(), scene, MEASURED)?;
     let standardizers: Vec<Standardizer> =
-        chains.iter().map(|chain| chain.plan(&held_out.calibration)).collect::<Result<_, _>>()?;
+        chains.iter().map(|chain| chain.plan(held_out)).collect::<Result<_, _>>()?;
     let shape = simulation.shape();
     let evaluator = || Evaluator::new(shape, EvaluationSettings::default());
     let mut raw = evaluator();
