@@ -2,6 +2,7 @@
 
 mod distance_sweep;
 mod exposure_sweep;
+pub mod joint;
 mod runs;
 mod warning;
 mod window;

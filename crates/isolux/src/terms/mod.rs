@@ -5,9 +5,11 @@ pub mod cubic;
 pub mod eq5;
 pub mod linear;
 pub mod lut;
+pub mod profile;
 pub mod spline;
 pub mod square;
 
+pub(crate) mod basis;
 mod polynomial;
 mod table;
 
