@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Cubic, Lut, ParameterError, Spline, require};
+use crate::terms::{Angle, Cubic, Lut, ParameterError, Profile, Spline, require};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -67,6 +67,12 @@ pub struct Terms {
     /// Distance, a smooth law around the inverse square.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spline: Option<Spline>,
+    /// Illumination profile, over the image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
+    /// Angle of incidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Angle>,
 }
 
 /// A camera's calibration, as its file holds it.
@@ -147,6 +153,8 @@ impl Calibration {
         require(!needs_time, "reference.integration_time_us", "nothing", "the time at which the lut is 1")?;
         self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
         self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
+        self.terms.profile.as_ref().map_or(Ok(()), Profile::check)?;
+        self.terms.angle.as_ref().map_or(Ok(()), Angle::check)?;
         let Some(spline) = &self.terms.spline else { return Ok(()) };
         let gauge_m = spline.reference_distance_m;
         require(gauge_m == distance_m, "spline.reference_distance_m", gauge_m, "reference.distance_m")?;

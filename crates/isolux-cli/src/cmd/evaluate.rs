@@ -22,8 +22,11 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     }
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
-    let standardizer =
-        Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
+    let standardizer = Standardizer::plan_for(
+        &args.steps.choice()?,
+        calibration.as_ref(),
+        frames::stream(recording.metadata()),
+    )?;
     standardizer.notes().iter().for_each(console::note);
     let pixels = if args.trusted { Pixels::Trusted } else { Pixels::Valid };
     let rivals = if args.alone {

@@ -23,8 +23,8 @@ const FLAGS: &str = "flags";
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
 /// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch; up
-/// to four planes of the denoising rules.
-const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4;
+/// to four planes of the denoising rules; four of the angles.
+const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4 + 4 * 4;
 
 /// What to write besides the two channels, and how.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,6 +43,7 @@ pub(crate) struct Summary {
     pub(crate) time_refused: usize,
     pub(crate) time_extrapolated: usize,
     pub(crate) distance_extrapolated: usize,
+    pub(crate) illumination_extrapolated: usize,
     pub(crate) specular: usize,
     /// Frames in which the specular rule found no cutoff, or there was no such step.
     pub(crate) frames_without_cutoff: usize,
@@ -53,8 +54,8 @@ pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     output::keep_clear_of(&args.output, inputs.into_iter().flatten())?;
     let calibration = frames::calibration(args.calibration.as_deref())?;
     let mut recording = isolux_io::open(&args.recording)?;
-    let standardizer =
-        Standardizer::plan(&args.steps.choice()?, calibration.as_ref(), recording.metadata().available)?;
+    let stream = frames::stream(recording.metadata());
+    let standardizer = Standardizer::plan_for(&args.steps.choice()?, calibration.as_ref(), stream)?;
     standardizer.notes().iter().for_each(console::note);
     let options = WriteOptions { keep_input: args.keep_input, overwrite: args.force, threads: args.threads };
     let summary = standardize(&mut *recording, &standardizer, calibration.as_ref(), &args.output, options)?;
@@ -176,6 +177,7 @@ impl Summary {
         self.time_refused += frame.time_refused;
         self.time_extrapolated += frame.time_extrapolated;
         self.distance_extrapolated += frame.distance_extrapolated;
+        self.illumination_extrapolated += frame.illumination_extrapolated;
         self.specular += frame.specular;
         self.frames_without_cutoff += usize::from(frame.specular_cutoff.is_none());
     }
@@ -236,6 +238,10 @@ fn describe(summary: &Summary) -> String {
         (summary.time_refused, "refused: integration time above the calibrated range, or unknown"),
         (summary.time_extrapolated, "below the calibrated integration times, continued as 1/t (flagged)"),
         (summary.distance_extrapolated, "outside the calibrated distances, continued as d² (flagged)"),
+        (
+            summary.illumination_extrapolated,
+            "outside the profile's support or steeper than was seen (flagged)",
+        ),
         (summary.specular, "limited as specular (flagged)"),
     ];
     lines.extend(

@@ -4,11 +4,13 @@ mod distance_sweep;
 mod exposure_sweep;
 pub mod joint;
 mod runs;
+mod target;
 mod warning;
 mod window;
 
 pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
+pub use target::{SurfaceUse, TargetReport, TargetSweep, TargetWindows};
 pub use warning::FitWarning;
 
 use crate::calibration::{Calibration, NoiseFloor, Reference};
@@ -87,8 +89,31 @@ pub enum CalibrateError {
         /// The plane.
         source: ShapeError,
     },
+    /// A target's recording without labels.
+    #[error(
+        "frame {frame}: no target channel found, one expected: its labels say which pixels are one material"
+    )]
+    NoTarget {
+        /// Frame number, from 0.
+        frame: usize,
+    },
+    /// Targets' recordings of unlike formats.
+    #[error(
+        "target {recording}: images of {found} found, {expected} expected: a profile holds for one format"
+    )]
+    TargetShape {
+        /// The recording.
+        recording: String,
+        /// Its shape.
+        found: String,
+        /// That of the first.
+        expected: String,
+    },
+    /// The joint model could not be fitted.
+    #[error("targets: {0}")]
+    Target(joint::JointError),
     /// No sweep given.
-    #[error("no recording given: calibrate needs at least one exposure sweep or distance sweep")]
+    #[error("no recording given: calibrate needs at least one exposure sweep, distance sweep or target")]
     NothingToFit,
     /// The table could not be fitted.
     #[error("exposure sweep {recording}: {source}")]
@@ -130,8 +155,21 @@ pub struct FitReport {
     pub decays: Vec<(Decay, DecayUse)>,
     /// What became of the same decays in the spline; empty where there is none.
     pub spline_uses: Vec<SplineUse>,
+    /// What the fit of targets found.
+    pub target: Option<TargetReport>,
     /// Everything that the user should know or record better, also in the calibration's terms.
     pub warnings: Vec<FitWarning>,
+}
+
+/// Measured recordings, by what they are.
+#[derive(Clone, Debug, Default)]
+pub struct Measurements {
+    /// Still scenes, the integration time varied.
+    pub exposure_sweeps: Vec<ExposureCurve>,
+    /// A flat target at several distances.
+    pub distance_sweeps: Vec<ReferenceDecays>,
+    /// Labelled targets in any pose.
+    pub targets: Vec<TargetWindows>,
 }
 
 /// Fits every term that the sweeps determine.
@@ -144,7 +182,21 @@ pub fn fit(
     exposure_curves: Vec<ExposureCurve>,
     distance_sweeps: Vec<ReferenceDecays>,
 ) -> Result<(Calibration, FitReport), CalibrateError> {
-    if exposure_curves.is_empty() && distance_sweeps.is_empty() {
+    let measured = Measurements { exposure_sweeps: exposure_curves, distance_sweeps, targets: Vec::new() };
+    fit_all(settings, camera, measured)
+}
+
+/// Fits every term that the recordings determine.
+///
+/// # Errors
+/// [`CalibrateError`] when no recording is given or a term cannot be fitted from what is there.
+pub fn fit_all(
+    settings: &CalibrateSettings,
+    camera: Option<String>,
+    measured: Measurements,
+) -> Result<(Calibration, FitReport), CalibrateError> {
+    let Measurements { exposure_sweeps: exposure_curves, distance_sweeps, targets } = measured;
+    if exposure_curves.is_empty() && distance_sweeps.is_empty() && targets.is_empty() {
         return Err(CalibrateError::NothingToFit);
     }
     let mut calibration = Calibration::new(camera, settings.reference);
@@ -160,9 +212,14 @@ pub fn fit(
         // Nothing says what the amplitudes of another time would be.
         calibration.reference.integration_time_us = None;
     }
-    let mut report = FitReport { exposure_curves, decays: Vec::new(), spline_uses: Vec::new(), warnings };
+    let mut report =
+        FitReport { exposure_curves, decays: Vec::new(), spline_uses: Vec::new(), target: None, warnings };
     if !distance_sweeps.is_empty() {
         fit_distance(settings, distance_sweeps, &mut calibration, &mut report)?;
+    }
+    if !targets.is_empty() {
+        let found = target::fit(settings, &targets, &mut calibration, &mut report.warnings)?;
+        report.target = Some(found);
     }
     Ok((calibration, report))
 }

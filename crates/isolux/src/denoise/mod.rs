@@ -82,6 +82,8 @@ pub(crate) struct Denoiser {
     measured_m: Vec<f32>,
     denoised_m: Vec<f32>,
     noise: NoiseScale,
+    /// `σ_d² a²` of the last frame that was denoised by a rule that needs it, m² DN².
+    scale: f64,
     wiener: Wiener,
     guide: plane::Guide,
 }
@@ -98,15 +100,25 @@ impl Denoiser {
         let out = &mut self.denoised_m;
         match rule {
             DenoiseRule::Median => median::denoise(image, out),
-            DenoiseRule::Wiener => self.wiener.denoise(image, self.noise.estimate(image), out, None),
+            DenoiseRule::Wiener => {
+                self.scale = self.noise.estimate(image);
+                self.wiener.denoise(image, self.scale, out, None);
+            }
             DenoiseRule::Plane => {
-                self.guide.denoise(image, self.noise.estimate(image), &mut self.wiener, out);
+                self.scale = self.noise.estimate(image);
+                self.guide.denoise(image, self.scale, &mut self.wiener, out);
             }
             // One frame is its own mean.
             DenoiseRule::Temporal => out.copy_from_slice(image.distance_m),
         }
         keep_the_rest(out, distance_m.values());
         out
+    }
+
+    /// What the last [`Self::denoise`] by [`DenoiseRule::Wiener`] gave, and `σ_d² a²` (m² DN²) of the distances
+    /// before it.
+    pub(crate) fn wiener_result(&self) -> (&[f32], f64) {
+        (&self.denoised_m, self.scale)
     }
 }
 

@@ -1,6 +1,9 @@
 //! What the user asks for: a method, and single steps that override it.
 
 use crate::denoise::DenoiseRule;
+use crate::frame::Channels;
+use crate::geometry::Intrinsics;
+use crate::plane::Shape;
 use crate::specular::SpecularRule;
 
 /// Which terms to use where no single step says otherwise.
@@ -51,6 +54,24 @@ pub enum DistanceStep {
     None,
 }
 
+/// The step that takes the illumination profile out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProfileStep {
+    /// The calibration's profile.
+    On,
+    /// Leave it in.
+    Off,
+}
+
+/// The step that takes the angle of incidence out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleStep {
+    /// The calibration's exponent of the cosine; Lambert's where it holds none.
+    On,
+    /// Leave it in.
+    Off,
+}
+
 /// The step that limits highlights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpecularStep {
@@ -71,8 +92,29 @@ pub struct Choice {
     pub denoise: Option<DenoiseStep>,
     /// Distance.
     pub distance: Option<DistanceStep>,
+    /// Illumination profile.
+    pub profile: Option<ProfileStep>,
+    /// Angle of incidence; otherwise it is left in.
+    pub angle: Option<AngleStep>,
     /// Highlights.
     pub specular: Option<SpecularStep>,
     /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
     pub low_signal_below_dn: Option<f32>,
+}
+
+/// What a plan must know of the recording that it is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stream {
+    /// Channels that it has.
+    pub channels: Channels,
+    /// Height and width of its frames, where they are known beforehand.
+    pub shape: Option<Shape>,
+    /// Its intrinsics, which the angle step needs.
+    pub intrinsics: Option<Intrinsics>,
+}
+
+impl From<Channels> for Stream {
+    fn from(channels: Channels) -> Self {
+        Self { channels, shape: None, intrinsics: None }
+    }
 }

@@ -1,22 +1,27 @@
 //! Standardizing frames: plan once, then apply to each frame without allocating.
 
 mod choice;
+mod illumination;
 mod kernel;
 mod plan;
 mod report;
 mod time;
 
-pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
+pub use choice::{
+    AngleStep, Choice, DenoiseStep, DistanceStep, Method, ProfileStep, SpecularStep, Stream, TimeStep,
+};
 pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
 use crate::denoise::{DenoiseRule, Denoiser, TemporalMean};
 use crate::flags::PixelFlags;
 use crate::frame::{Channels, Frame};
+use crate::normals::Incidence;
 use crate::plane::{Plane, Shape, ShapeError};
 use crate::quantile::PositiveQuantiles;
 use crate::specular;
 use crate::terms::DistanceGain;
+use illumination::Illumination;
 use kernel::{BLOCK, Block};
 use plan::Plan;
 use time::TimeGain;
@@ -36,6 +41,7 @@ pub struct Standardized {
     pub flags: Plane<PixelFlags>,
     quantiles: PositiveQuantiles,
     denoiser: Denoiser,
+    incidence: Incidence,
 }
 
 /// What happened to one frame.
@@ -51,6 +57,8 @@ pub struct FrameSummary {
     pub time_extrapolated: usize,
     /// Pixels whose distance is outside the fitted range: continued as d² and flagged.
     pub distance_extrapolated: usize,
+    /// Pixels outside the support of the profile or steeper than the angle term has seen: continued and flagged.
+    pub illumination_extrapolated: usize,
     /// Pixels limited as specular.
     pub specular: usize,
     /// The value they were limited to, DN; `None` when the rule found no cutoff or there is no such step.
@@ -73,6 +81,16 @@ pub enum StandardizeError {
     /// The distance that the plan needs is not there.
     #[error("distance found missing, a plane of metres expected: the distance step needs it")]
     DistanceMissing,
+    /// The frame is not of the format that the illumination profile holds for.
+    #[error(
+        "a frame of {found} found, {expected} expected: the illumination profile holds for that format alone"
+    )]
+    ProfileFormat {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
     /// The plan smooths over frames, and only one was given.
     #[error(
         "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \
@@ -90,6 +108,7 @@ impl Standardized {
             flags: Plane::filled(shape, PixelFlags::empty()),
             quantiles: PositiveQuantiles::new(),
             denoiser: Denoiser::default(),
+            incidence: Incidence::default(),
         }
     }
 
@@ -112,7 +131,20 @@ impl Standardizer {
         calibration: Option<&Calibration>,
         available: Channels,
     ) -> Result<Self, PlanError> {
-        Ok(Self { plan: Plan::new(choice, calibration, available)? })
+        Self::plan_for(choice, calibration, available.into())
+    }
+
+    /// Like [`Self::plan`], for a recording of which more is known than its channels: the step `angle` needs its
+    /// intrinsics, and the profile is for one image format.
+    ///
+    /// # Errors
+    /// [`PlanError`] when something asked for by name cannot be done.
+    pub fn plan_for(
+        choice: &Choice,
+        calibration: Option<&Calibration>,
+        stream: Stream,
+    ) -> Result<Self, PlanError> {
+        Ok(Self { plan: Plan::new(choice, calibration, stream)? })
     }
 
     /// The steps, in the order in which they are applied.
@@ -132,7 +164,8 @@ impl Standardizer {
     pub fn needed(&self) -> Channels {
         let mut needed = Channels::AMPLITUDE;
         needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
-        needed.set(Channels::DISTANCE, self.plan.distance.is_some());
+        let by_distance = self.plan.distance.is_some() || self.plan.illumination.angle.is_some();
+        needed.set(Channels::DISTANCE, by_distance);
         needed
     }
 
@@ -213,6 +246,9 @@ impl Standardizer {
                 }
                 (Some(_), Some(distances), _) => Some(distances.values()),
             };
+        let surfaces = distance_m.or(frame.distance_m.as_ref());
+        let illumination = Illumination::new(&self.plan.illumination, frame, surfaces, &mut out.incidence)?;
+        let varies = self.plan.distance_table.is_some() || illumination.is_needed();
         let mut gains = [1.0; BLOCK];
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
@@ -226,12 +262,13 @@ impl Standardizer {
                 gains[..count].copy_from_slice(values);
             }
             let distance_m = distances.map_or(&ONES[..count], |distances| &distances[start..start + count]);
+            if varies && let TimeGain::Uniform(gain) = gain {
+                gains[..count].fill(gain);
+            }
             if let Some(table) = &self.plan.distance_table {
-                if let TimeGain::Uniform(gain) = gain {
-                    gains[..count].fill(gain);
-                }
                 table.scale(distance_m, &mut gains[..count]);
             }
+            illumination.scale(start, &mut gains[..count], flags);
             let block = Block { amplitude, distance_m, time_gain: &gains[..count] };
             kernel::pointwise(block, &law, self.plan.low_signal_below_dn, values, flags);
         }
@@ -243,11 +280,12 @@ fn count(out: &Standardized) -> FrameSummary {
     let flags = out.flags.values();
     let mut tally = [0; kernel::TALLIES.len()];
     flags.chunks(BLOCK).for_each(|block| kernel::tally(block, &mut tally));
-    let [invalid, distance_extrapolated, specular] = tally;
+    let [invalid, distance_extrapolated, specular, illumination_extrapolated] = tally;
     FrameSummary {
         valid: flags.len() - invalid,
         pixels: flags.len(),
         distance_extrapolated,
+        illumination_extrapolated,
         specular,
         ..FrameSummary::default()
     }

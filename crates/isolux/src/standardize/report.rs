@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use crate::plane::Shape;
+
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppliedStep {
-    /// Which effect it takes out: `time`, `denoise`, `distance` or `specular`.
+    /// Which effect it takes out: `time`, `denoise`, `distance`, `profile`, `angle` or `specular`.
     pub effect: &'static str,
     /// Name of the term.
     pub term: &'static str,
@@ -38,6 +40,15 @@ pub enum Note {
     },
     /// The distance is to be denoised, but no step scales by it.
     NothingToDenoise,
+    /// `best` goes without the profile, which holds for another image format.
+    ProfileFormat {
+        /// Shape of the recording's frames.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
+    /// The calibration knows no angle, so that Lambert's cosine stands in.
+    Lambert,
 }
 
 impl fmt::Display for Note {
@@ -56,6 +67,14 @@ impl fmt::Display for Note {
             }
             Self::NothingToDenoise => f.write_str(
                 "no step scales by the distance: there is nothing to denoise, and this step is left out",
+            ),
+            Self::ProfileFormat { found, expected } => write!(
+                f,
+                "the frames are {found}, the calibration's `profile` is for {expected}: this step is left out"
+            ),
+            Self::Lambert => f.write_str(
+                "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets. `isolux \
+                 calibrate --target REC` measures it",
             ),
         }
     }
@@ -85,6 +104,22 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
+    /// The profile asked for is that of another image format.
+    #[error(
+        "`profile` was asked for, but it holds for images of {expected}, and the recording's are {found}"
+    )]
+    ProfileFormat {
+        /// Shape of the recording's frames.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
+    /// No rays, no angles.
+    #[error(
+        "`angle` was asked for, but the recording has no intrinsics: write {{\"intrinsics\": {{\"fx\": .., \"fy\": .., \
+         \"cx\": .., \"cy\": ..}}}} (pixels) into its recording.json"
+    )]
+    IntrinsicsMissing,
     /// The calibration's own values are impossible.
     #[error("calibration: {0}")]
     Calibration(#[from] crate::terms::ParameterError),

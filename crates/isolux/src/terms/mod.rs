@@ -1,6 +1,7 @@
 //! The correction terms, one file each: model, fit and parameters together. A term has one name, in code, in
 //! the calibration file and on the command line.
 
+pub mod angle;
 pub mod cubic;
 pub mod eq5;
 pub mod linear;
@@ -13,9 +14,11 @@ pub(crate) mod basis;
 mod polynomial;
 mod table;
 
+pub use angle::Angle;
 pub use cubic::Cubic;
 pub use lut::Lut;
 pub use polynomial::DistanceGain;
+pub use profile::Profile;
 pub use spline::Spline;
 pub use table::DistanceTable;
 

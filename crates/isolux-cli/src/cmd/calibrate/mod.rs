@@ -1,12 +1,13 @@
-//! `isolux calibrate`: sweeps in, `CAMERA.json` out.
+//! `isolux calibrate`: sweeps and targets in, `CAMERA.json` out.
 
 mod describe;
+mod targets;
 
 use std::path::{Path, PathBuf};
 
 use isolux::calibrate::{
     self, CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureSweep, FitReport,
-    ReferenceDecays,
+    Measurements, ReferenceDecays, TargetSweep, TargetWindows,
 };
 use isolux::{Calibration, Channels, Frame, Reference};
 
@@ -18,13 +19,17 @@ use crate::{frames, output};
 pub(crate) use describe::describe;
 
 pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
-    if args.exposure_sweep.is_empty() && args.distance_sweep.is_empty() {
+    let inputs = Inputs {
+        exposure_sweeps: &args.exposure_sweep,
+        distance_sweeps: &args.distance_sweep,
+        targets: &args.target,
+    };
+    if inputs.all().next().is_none() {
         return Err(Failure::usage(
-            "nothing to fit: give --exposure-sweep REC or --distance-sweep REC, or both",
+            "nothing to fit: give --exposure-sweep REC, --distance-sweep REC or --target REC, or several",
         ));
     }
-    let inputs = args.exposure_sweep.iter().chain(&args.distance_sweep);
-    output::keep_clear_of(&args.output, inputs.map(PathBuf::as_path))?;
+    output::keep_clear_of(&args.output, inputs.all())?;
     output::expect_calibration_or_nothing(&args.output)?;
     let settings = CalibrateSettings {
         reference: Reference {
@@ -36,8 +41,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         exclude_time_us: args.exclude_time_us.clone(),
         modulation_frequency_hz: None,
     };
-    let (calibration, report) =
-        fit(&settings, args.camera.clone(), &args.exposure_sweep, &args.distance_sweep)?;
+    let (calibration, report) = fit(&settings, args.camera.clone(), inputs)?;
     isolux_io::write_calibration(&calibration, &args.output)?;
     report.warnings.iter().for_each(console::warn);
     if args.json {
@@ -47,19 +51,36 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     console::print(format!("written: {}", args.output.display()))
 }
 
-/// Measures the sweeps and fits what they determine. Distance sweeps tell the modulation frequency, unless the
-/// settings do.
+/// Recordings, by what they are.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Inputs<'a> {
+    pub(crate) exposure_sweeps: &'a [PathBuf],
+    pub(crate) distance_sweeps: &'a [PathBuf],
+    pub(crate) targets: &'a [PathBuf],
+}
+
+impl<'a> Inputs<'a> {
+    fn all(self) -> impl Iterator<Item = &'a Path> {
+        let sweeps = self.exposure_sweeps.iter().chain(self.distance_sweeps);
+        sweeps.chain(self.targets).map(PathBuf::as_path)
+    }
+}
+
+/// Measures the recordings and fits what they determine. Distance sweeps, and targets where there are none, tell the
+/// modulation frequency, unless the settings do.
 pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
-    exposure_sweeps: &[PathBuf],
-    distance_sweeps: &[PathBuf],
+    inputs: Inputs<'_>,
 ) -> Outcome<(Calibration, FitReport)> {
+    let Inputs { exposure_sweeps, distance_sweeps, targets } = inputs;
     let mut cameras = Vec::new();
     let curves = exposure_sweeps.iter().map(|path| exposure_curve(path, settings, &mut cameras));
     let curves = curves.collect::<Outcome<Vec<_>>>()?;
     let decays = distance_sweeps.iter().map(|path| reference_decays(path, settings, &mut cameras));
     let decays = decays.collect::<Outcome<Vec<_>>>()?;
+    let windows = targets.iter().map(|path| target_windows(path, settings, &mut cameras));
+    let windows = windows.collect::<Outcome<Vec<_>>>()?;
     cameras.dedup();
     if camera.is_none() && cameras.len() > 1 {
         let names = cameras.join("`, `");
@@ -70,9 +91,11 @@ pub(crate) fn fit(
     let camera = camera.or_else(|| cameras.into_iter().next());
     let mut settings = settings.clone();
     if settings.modulation_frequency_hz.is_none() {
-        settings.modulation_frequency_hz = modulation_frequency_hz(distance_sweeps)?;
+        let telling = if distance_sweeps.is_empty() { targets } else { distance_sweeps };
+        settings.modulation_frequency_hz = modulation_frequency_hz(telling)?;
     }
-    calibrate::fit(&settings, camera, curves, decays).map_err(|error| {
+    let measured = Measurements { exposure_sweeps: curves, distance_sweeps: decays, targets: windows };
+    calibrate::fit_all(&settings, camera, measured).map_err(|error| {
         error.warnings().iter().for_each(console::warn);
         match error {
             // Pooled from all distance sweeps, so the error knows none of them.
@@ -85,7 +108,7 @@ pub(crate) fn fit(
     })
 }
 
-/// The frequency that all distance sweeps name; one that does not leaves it open.
+/// The frequency that all of these recordings name; one that does not leaves it open.
 fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     let mut frequencies = Vec::new();
     for path in paths {
@@ -94,7 +117,7 @@ fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     frequencies.dedup();
     if frequencies.len() > 1 {
         console::warn(
-            "the distance sweeps name different modulation frequencies, or some of them none: the spline goes \
+            "the recordings over distance name different modulation frequencies, or some of them none: the spline goes \
              without the harmonic",
         );
         return Ok(None);
@@ -108,7 +131,7 @@ fn exposure_curve(
     cameras: &mut Vec<String>,
 ) -> Outcome<ExposureCurve> {
     let mut sweep = ExposureSweep::new(path.display().to_string(), settings);
-    measure(path, "exposure sweep", cameras, |frame| sweep.push(frame))?;
+    measure(path, "exposure sweep", Channels::empty(), cameras, |frame| sweep.push(frame))?;
     Ok(sweep.finish())
 }
 
@@ -118,19 +141,31 @@ fn reference_decays(
     cameras: &mut Vec<String>,
 ) -> Outcome<ReferenceDecays> {
     let mut sweep = DistanceSweep::new(path.display().to_string(), settings);
-    measure(path, "distance sweep", cameras, |frame| sweep.push(frame))?;
+    measure(path, "distance sweep", Channels::empty(), cameras, |frame| sweep.push(frame))?;
+    Ok(sweep.finish())
+}
+
+fn target_windows(
+    path: &Path,
+    settings: &CalibrateSettings,
+    cameras: &mut Vec<String>,
+) -> Outcome<TargetWindows> {
+    let intrinsics = frames::stream(isolux_io::open(path)?.metadata()).intrinsics;
+    let mut sweep = TargetSweep::new(path.display().to_string(), settings, intrinsics);
+    measure(path, "target", Channels::TARGET, cameras, |frame| sweep.push(frame))?;
     Ok(sweep.finish())
 }
 
 fn measure(
     path: &Path,
     what: &str,
+    besides: Channels,
     cameras: &mut Vec<String>,
     mut push: impl FnMut(&Frame) -> Result<(), CalibrateError>,
 ) -> Outcome {
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
     frames::for_each(&mut *recording, wanted, what, |_, frame| {
         push(frame).map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
     })

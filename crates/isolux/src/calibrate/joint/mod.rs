@@ -32,6 +32,9 @@ pub const LAW_CURVATURE: f64 = 1.0;
 /// Standard deviation of the curvature of ln v beside r² and r⁴, per squared half diagonal.
 pub const PROFILE_CURVATURE: f64 = 0.5;
 
+/// Residuals beyond this many σ have no weight (Tukey's biweight).
+pub(crate) const CUTOFF: f64 = 4.685;
+
 /// One amplitude of one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -48,7 +51,8 @@ pub struct Observation {
     pub place: [f32; 2],
     /// Cosine of the angle of incidence; not used where [`AngleModel::Absent`].
     pub cosine: f32,
-    /// Relative weight, 1 for an ordinary observation: inverse variance against the others'.
+    /// Relative weight, 1 for an ordinary observation: inverse variance against the others'. With 0 it takes no part,
+    /// but its residual is told: a prediction.
     pub weight: f32,
 }
 

@@ -175,7 +175,7 @@ fn is_usable(observation: &Observation, model: &JointModel) -> bool {
     let positive = |value: f32| value > 0.0 && value < f32::INFINITY;
     let place = observation.place.iter().all(|value| value.abs() <= 10.0);
     observation.ln_amplitude.is_finite()
-        && positive(observation.weight)
+        && (observation.weight >= 0.0 && observation.weight < f32::INFINITY)
         && model.time.is_none_or(|time| usize::from(observation.time) < time.count)
         && (model.distance.is_none() || positive(observation.distance_m))
         && (model.profile.is_none() || place)

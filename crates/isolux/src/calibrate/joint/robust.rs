@@ -79,6 +79,7 @@ fn scale(problem: &Problem, residuals: &[f64], given: &[f64]) -> f64 {
     let mut scaled: Vec<f64> = residuals
         .iter()
         .zip(given)
+        .filter(|(_, given)| **given > 0.0)
         .map(|(residual, given)| residual * given.sqrt())
         .filter(|residual| residual.is_finite())
         .collect();

@@ -279,11 +279,15 @@ fn what_cannot_be_fitted_is_an_error_with_numbers() {
     spoilt[4].distance_m = 0.0;
     spoilt[5].cosine = -0.3;
     spoilt[6].place[1] = f32::NAN;
-    spoilt[7].weight = 0.0;
+    spoilt[7].weight = f32::NAN;
+    spoilt[8].weight = 0.0;
+    spoilt[8].ln_amplitude = 100.0;
     let model = JointModel { time: None, angle: AngleModel::Fixed(1.0), ..everything() };
     let fit = solve(&spoilt, &model).unwrap();
     assert!((0..10).all(|i| fit.residuals[i].is_nan() == (3..8).contains(&i)));
     assert_eq!(fit.residuals.len(), spoilt.len());
+    // What has no weight is predicted and does not pull.
+    assert!(fit.residuals[8] > 90.0 && fit.weights[8] == 0.0 && fit.sigma < 1.1 * NOISE, "{}", fit.sigma);
 }
 
 #[test]
