@@ -40,30 +40,90 @@ pub(crate) struct Incidence {
 }
 
 impl Incidence {
-    /// Cosines of the angle of incidence of `frame` seen at `distance_m` (m, radial), 0..=1, row by row; NaN where
-    /// no plane was found or the pixel is no measurement. Allocates only when the shape differs from that of the last
-    /// frame.
+    /// Takes the next frame, seen at `distance_m` (m, radial). Allocates only when the shape differs from that of the
+    /// last frame.
+    pub(crate) fn take(&mut self, frame: &Frame, distance_m: &Plane<f32>, intrinsics: &Intrinsics) {
+        self.denoiser.denoise(DenoiseRule::Wiener, frame, distance_m);
+        let (denoised_m, scale) = self.denoiser.wiener_result();
+        self.normals.take(frame, intrinsics, denoised_m, scale.sqrt());
+    }
+
+    /// Cosine of the angle of incidence, 0..=1, at a pixel of that frame; NaN where no plane was found or the pixel
+    /// is no measurement.
+    pub(crate) fn cosine(&self, index: usize, intrinsics: &Intrinsics) -> f32 {
+        self.normals.cosine(index, intrinsics)
+    }
+
+    /// The same for all pixels of a frame, row by row.
     pub(crate) fn cosines(
         &mut self,
         frame: &Frame,
         distance_m: &Plane<f32>,
         intrinsics: &Intrinsics,
     ) -> &[f32] {
-        self.denoiser.denoise(DenoiseRule::Wiener, frame, distance_m);
-        let (denoised_m, scale) = self.denoiser.wiener_result();
-        let amplitude = frame.amplitude.values();
-        let deviation = scale.sqrt();
-        let noise_m = |index: usize| deviation / f64::from(amplitude[index]);
-        self.normals.cosines(frame, intrinsics, denoised_m, noise_m)
+        self.take(frame, distance_m, intrinsics);
+        self.normals.cosines(intrinsics)
     }
 }
 
 /// Working memory of the fits.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Normals {
+    shape: Shape,
     /// 1/z, 1/m; NaN where there is no distance.
     inverse_depth: Vec<f32>,
+    /// Relative standard deviation of each pixel's distance, before it was denoised.
+    noise: Vec<f32>,
     cosines: Vec<f32>,
+}
+
+impl Default for Normals {
+    fn default() -> Self {
+        let empty = Vec::new;
+        Self { shape: Shape::new(0, 0), inverse_depth: empty(), noise: empty(), cosines: empty() }
+    }
+}
+
+impl Facet {
+    /// Within a thousandth of the slant.
+    fn is_close_to(self, other: Self) -> bool {
+        let limit = 1e-3 * self.c.abs();
+        (self.a - other.a).abs() < limit && (self.b - other.b).abs() < limit
+    }
+}
+
+impl Normals {
+    /// `distance_m` are denoised radial distances (m), NaN or not positive where there are none; before that, they had
+    /// the standard deviation `deviation / amplitude`.
+    fn take(&mut self, frame: &Frame, intrinsics: &Intrinsics, distance_m: &[f32], deviation: f64) {
+        self.shape = frame.shape();
+        self.inverse_depth.resize(distance_m.len(), f32::NAN);
+        self.noise.resize(distance_m.len(), f32::NAN);
+        for (index, &distance) in distance_m.iter().enumerate() {
+            let per_depth = radial_per_depth(intrinsics, index / self.shape.width, index % self.shape.width);
+            let measured = distance > 0.0 && distance < f32::INFINITY && frame.is_valid(index);
+            let inverse = if measured { (per_depth / f64::from(distance)) as f32 } else { f32::NAN };
+            self.inverse_depth[index] = inverse;
+            self.noise[index] = deviation as f32 / (frame.amplitude.values()[index] * distance);
+        }
+    }
+
+    fn cosine(&self, index: usize, intrinsics: &Intrinsics) -> f32 {
+        if self.inverse_depth[index].is_nan() {
+            return f32::NAN;
+        }
+        let field = Field { shape: self.shape, intrinsics, inverse_depth: &self.inverse_depth };
+        let cosine = field.cosine(index, f64::from(self.noise[index]));
+        cosine.map_or(f32::NAN, |cosine| cosine as f32)
+    }
+
+    fn cosines(&mut self, intrinsics: &Intrinsics) -> &[f32] {
+        let mut cosines = std::mem::take(&mut self.cosines);
+        cosines.resize(self.inverse_depth.len(), f32::NAN);
+        cosines.iter_mut().enumerate().for_each(|(index, out)| *out = self.cosine(index, intrinsics));
+        self.cosines = cosines;
+        &self.cosines
+    }
 }
 
 /// What the fits of one frame share.
@@ -79,37 +139,6 @@ struct Facet {
     a: f64,
     b: f64,
     c: f64,
-}
-
-impl Normals {
-    /// `distance_m` are denoised radial distances (m), NaN or not positive where there are none; `noise_m` tells the
-    /// standard deviation (m) of a pixel's distance before that.
-    fn cosines(
-        &mut self,
-        frame: &Frame,
-        intrinsics: &Intrinsics,
-        distance_m: &[f32],
-        noise_m: impl Fn(usize) -> f64,
-    ) -> &[f32] {
-        let shape = frame.shape();
-        self.inverse_depth.resize(shape.pixels(), f32::NAN);
-        self.cosines.resize(shape.pixels(), f32::NAN);
-        for (index, (inverse, &distance)) in self.inverse_depth.iter_mut().zip(distance_m).enumerate() {
-            let per_depth = radial_per_depth(intrinsics, index / shape.width, index % shape.width);
-            let measured = distance > 0.0 && distance < f32::INFINITY && frame.is_valid(index);
-            *inverse = if measured { (per_depth / f64::from(distance)) as f32 } else { f32::NAN };
-        }
-        let field = Field { shape, intrinsics, inverse_depth: &self.inverse_depth };
-        for (index, cosine) in self.cosines.iter_mut().enumerate() {
-            let distance = f64::from(distance_m[index]);
-            *cosine = if self.inverse_depth[index].is_nan() {
-                f32::NAN
-            } else {
-                field.cosine(index, noise_m(index) / distance).map_or(f32::NAN, |cosine| cosine as f32)
-            };
-        }
-        &self.cosines
-    }
 }
 
 impl Field<'_> {
@@ -148,7 +177,12 @@ impl Field<'_> {
         let mut facet = Facet { a: 0.0, b: 0.0, c: middle };
         for round in 0..ROUNDS {
             let sums = self.sums((row, column), step, facet, cutoff);
+            let before = facet;
             facet = sums.corrected(facet)?;
+            let closest = cutoff <= LEAST_CUTOFF * middle * 1.001;
+            if closest && facet.is_close_to(before) {
+                break;
+            }
             if round > 0 {
                 let closer = 3.0 * sums.root_mean_square();
                 cutoff = closer.clamp(0.5 * cutoff, cutoff).max(LEAST_CUTOFF * middle);
@@ -268,10 +302,13 @@ mod tests {
         (*state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     }
 
-    fn frame(shape: Shape) -> Frame {
+    /// Cosines where the distances have the standard deviation `noise_m`.
+    fn cosines(shape: Shape, distance_m: &[f32], noise_m: f64) -> Vec<f32> {
         let mut frame = Frame::new(shape);
         frame.amplitude.fill(100.0);
-        frame
+        let mut normals = Normals::default();
+        normals.take(&frame, &INTRINSICS, distance_m, 100.0 * noise_m);
+        normals.cosines(&INTRINSICS).to_vec()
     }
 
     #[test]
@@ -279,8 +316,7 @@ mod tests {
         for n in [[0.0, 0.0, 1.0], [0.8, 0.1, 1.0], [-0.5, 1.1, 1.0]] {
             let truth: Vec<(f64, f64)> = (0..SHAPE.pixels()).map(|i| plane(n, 1.3, i)).collect();
             let distances: Vec<f32> = truth.iter().map(|(d, _)| *d as f32).collect();
-            let mut normals = Normals::default();
-            let cosines = normals.cosines(&frame(SHAPE), &INTRINSICS, &distances, |_| 0.0);
+            let cosines = cosines(SHAPE, &distances, 0.0);
             for (found, (d, cosine)) in cosines.iter().zip(&truth) {
                 // 1/z in f32, 6e-8 of it, over a window of 1/25 rad: 2e-6 of slant. Beyond 75° nothing is promised.
                 assert!(
@@ -300,8 +336,7 @@ mod tests {
         let truth: Vec<(f64, f64)> = (0..SHAPE.pixels()).map(|i| plane(side(i).0, side(i).1, i)).collect();
         let distances: Vec<f32> =
             truth.iter().map(|(d, _)| (d * (1.0 + 0.002 * uniform(&mut state))) as f32).collect();
-        let mut normals = Normals::default();
-        let cosines = normals.cosines(&frame(SHAPE), &INTRINSICS, &distances, |_| 0.0006).to_vec();
+        let cosines = cosines(SHAPE, &distances, 0.0006);
         let errors =
             cosines.iter().zip(&truth).map(|(found, (_, cosine))| (f64::from(*found) - cosine).abs());
         let errors: Vec<f64> = errors.filter(|error| error.is_finite()).collect();
@@ -317,9 +352,8 @@ mod tests {
         let mut distances = vec![f32::NAN; SHAPE.pixels()];
         distances[40] = 1.0;
         (0..80).for_each(|column| distances[30 * 80 + column] = 1.0);
-        let mut normals = Normals::default();
         // One pixel and one line determine no plane.
-        assert!(normals.cosines(&frame(SHAPE), &INTRINSICS, &distances, |_| 0.0).iter().all(|c| c.is_nan()));
-        assert!(normals.cosines(&frame(Shape::new(1, 1)), &INTRINSICS, &[1.0], |_| 0.0)[0].is_nan());
+        assert!(cosines(SHAPE, &distances, 0.0).iter().all(|c| c.is_nan()));
+        assert!(cosines(Shape::new(1, 1), &[1.0], 0.0)[0].is_nan());
     }
 }

@@ -2,6 +2,7 @@
 //! fitted or tuned on.
 
 pub mod chains;
+pub mod checkerboard;
 pub mod decay;
 pub mod denoise;
 pub mod figure;

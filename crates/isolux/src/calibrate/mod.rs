@@ -10,7 +10,7 @@ mod window;
 
 pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
-pub use target::{SurfaceUse, TargetReport, TargetSweep, TargetWindows};
+pub use target::{SurfaceUse, TargetReport, TargetSweep, TargetWindows, label_windows};
 pub use warning::FitWarning;
 
 use crate::calibration::{Calibration, NoiseFloor, Reference};

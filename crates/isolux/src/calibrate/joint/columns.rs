@@ -152,10 +152,11 @@ impl Columns {
     /// The inverse covariance of the coefficients' prior.
     pub(super) fn prior(&self) -> DMatrix<f64> {
         let mut prior = DMatrix::from_diagonal_element(self.len, self.len, COEFFICIENT_SD.powi(-2));
+        let smoothness = self.model.smoothness;
         let mut add = |range: &Range<usize>, curvature: DMatrix<f64>, sd: f64| {
             let size = (range.len(), range.len());
             let mut block = prior.view_mut((range.start, range.start), size);
-            block += curvature / (sd * sd);
+            block += curvature * (smoothness / (sd * sd));
         };
         if let Some((_, basis)) = self.distance {
             add(&self.law, basis.curvature(), LAW_CURVATURE);

@@ -148,7 +148,8 @@ fn law(problem: &Problem, robust: &Robust) -> Option<LawFit> {
         valid_distance_m: ends.map(f64::exp),
         coefficients: coefficients[columns.law.clone()].iter().map(|c| c - gauge).collect(),
         harmonic,
-        curvature_weight: (robust.sigma / LAW_CURVATURE).powi(2) / robust.normal.total,
+        curvature_weight: columns.model.smoothness * (robust.sigma / LAW_CURVATURE).powi(2)
+            / robust.normal.total,
     })
 }
 

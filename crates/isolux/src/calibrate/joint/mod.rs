@@ -67,6 +67,9 @@ pub struct JointModel {
     pub profile: Option<Places>,
     /// Angle of incidence.
     pub angle: AngleModel,
+    /// Factor on the weight of the curvatures' prior, 1 for independent errors. Errors that many observations share
+    /// (those of one frame, say) ask for more.
+    pub smoothness: f64,
 }
 
 /// One factor s_j per integration time.

@@ -165,6 +165,9 @@ fn check(model: &JointModel) -> Result<(), JointError> {
             return refuse(format!("{law:?}"), "a positive reference distance and modulation frequency");
         }
     }
+    if !(model.smoothness > 0.0 && model.smoothness.is_finite()) {
+        return refuse(format!("smoothness {}", model.smoothness), "a positive factor");
+    }
     match model.angle {
         AngleModel::Fixed(k) if !k.is_finite() => refuse(format!("k = {k}"), "a finite exponent"),
         _ => Ok(()),

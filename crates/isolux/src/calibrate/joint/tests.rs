@@ -86,6 +86,7 @@ fn everything() -> JointModel {
         distance: Some(DistanceModel { reference_m: 0.75, modulation_frequency_hz: Some(FREQUENCY_HZ) }),
         profile: Some(places()),
         angle: AngleModel::Free,
+        smoothness: 1.0,
     }
 }
 
@@ -264,11 +265,14 @@ fn errors_of_the_fit_are_as_large_as_predicted() {
 
 #[test]
 fn what_cannot_be_fitted_is_an_error_with_numbers() {
-    let nothing = JointModel { time: None, distance: None, profile: None, angle: AngleModel::Absent };
+    let nothing =
+        JointModel { time: None, distance: None, profile: None, angle: AngleModel::Absent, smoothness: 1.0 };
     let observations = wall(&mut Random(5));
     assert!(matches!(solve(&observations, &nothing), Err(JointError::Model { .. })));
     let time = Some(TimeModel { count: 3, reference: 3 });
     assert!(matches!(solve(&observations, &JointModel { time, ..nothing }), Err(JointError::Model { .. })));
+    let rough = JointModel { smoothness: 0.0, ..everything() };
+    assert!(matches!(solve(&observations, &rough), Err(JointError::Model { .. })));
     assert!(matches!(solve(&[], &everything()), Err(JointError::TooFew { found: 0, .. })));
     let alone: Vec<Observation> =
         (0u32..).zip(&observations).map(|(surface, o)| Observation { surface, ..*o }).collect();

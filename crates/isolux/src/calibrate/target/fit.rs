@@ -14,6 +14,8 @@ use crate::calibration::Calibration;
 
 /// Parts that the frames are divided into for the held-out residual.
 const FOLDS: u32 = 5;
+/// Factors on the weight of smoothness that are tried.
+const SMOOTHNESS: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
 
 /// Fits the terms that the windows determine into `calibration`. Whatever was left out, and why, goes to `warnings`.
 ///
@@ -30,6 +32,7 @@ pub(in crate::calibrate) fn fit(
     let mut surfaces = gloss::judge(&rows, targets, warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     rows.leave_out(&left_out);
+    rows.model.smoothness = smoothness(&rows);
     let fit = determined(&rows.observations, rows.model, warnings).map_err(CalibrateError::Target)?;
     for (surface, used) in surfaces.iter_mut().enumerate() {
         let mine = rows.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
@@ -73,6 +76,19 @@ fn determined(
         }
     }
     Ok(fit)
+}
+
+/// The smoothness that predicts frames best that are left out; of equals, the least. The windows of one frame share
+/// the errors of its pose, so that independent errors, for which 1 is right, are the exception.
+fn smoothness(rows: &Rows) -> f64 {
+    let tried = SMOOTHNESS.map(|smoothness| {
+        let model = JointModel { smoothness, ..rows.model };
+        (smoothness, held_out(rows, &model).unwrap_or(f64::INFINITY))
+    });
+    tried
+        .into_iter()
+        .reduce(|best, next| if next.1 < best.1 { next } else { best })
+        .map_or(1.0, |best| best.0)
 }
 
 /// Root mean square of the relative error on frames that were left out in turn; `None` with too few frames.

@@ -1,4 +1,5 @@
-//! Measuring recordings of labelled targets in any pose: medians of small windows inside a label, frame by frame.
+//! Measuring recordings of labelled targets in any pose: medians of small windows inside a label, frame by frame. A row
+//! of pixels at the label's border that see two materials moves no median by much.
 
 mod fit;
 mod gloss;
@@ -124,18 +125,16 @@ impl TargetSweep {
         {
             return Ok(());
         }
-        let cosines = match (&frame.distance_m, &self.intrinsics) {
-            (Some(distance_m), Some(intrinsics)) => {
-                Some(self.incidence.cosines(frame, distance_m, intrinsics))
-            }
-            _ => None,
-        };
+        if let (Some(distance_m), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+            self.incidence.take(frame, distance_m, intrinsics);
+        }
         let before = self.windows.len();
         for &(row, column) in self.patches.find(target) {
             let Some(mut window) = measure(frame, target, (row, column)) else { continue };
             window.frame = u32::try_from(number).unwrap_or(u32::MAX);
-            if let Some(cosines) = cosines {
-                window.cosine = middle_cosine(cosines, shape, (row, column));
+            if let (Some(_), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+                let cosine = |index| self.incidence.cosine(index, intrinsics);
+                window.cosine = middle_cosine(cosine, shape, (row, column));
                 self.without_normal += usize::from(window.cosine.is_nan());
             }
             self.windows.push(window);
@@ -157,6 +156,16 @@ impl TargetSweep {
             without_normal: self.without_normal,
         }
     }
+}
+
+/// The windows of 5×5 pixels that are measured in an image of labels: each lies inside one label above 0, and none
+/// overlaps another.
+#[must_use]
+pub fn label_windows(target: &Plane<u8>) -> Vec<crate::plane::Window> {
+    let mut patches = Patches::default();
+    let window =
+        |&(top, left): &(usize, usize)| crate::plane::Window { top, left, height: PATCH_PX, width: PATCH_PX };
+    patches.find(target).iter().map(window).collect()
 }
 
 /// Indices of the window whose first pixel is at (row, column).
@@ -223,10 +232,10 @@ fn centre_and_scatter(values: &mut [f64]) -> Option<(f64, f64)> {
 }
 
 /// Median of the window's cosines; NaN where fewer than half of its pixels have one.
-fn middle_cosine(cosines: &[f32], shape: Shape, corner: (usize, usize)) -> f32 {
+fn middle_cosine(cosine: impl Fn(usize) -> f32, shape: Shape, corner: (usize, usize)) -> f32 {
     let mut known = [0.0; PATCH_PX * PATCH_PX];
     let mut count = 0;
-    for cosine in indices(shape, corner).map(|index| cosines[index]).filter(|cosine| !cosine.is_nan()) {
+    for cosine in indices(shape, corner).map(cosine).filter(|cosine| !cosine.is_nan()) {
         known[count] = f64::from(cosine);
         count += 1;
     }

@@ -4,8 +4,6 @@ use crate::plane::Plane;
 
 /// Side of a window, pixels.
 pub(super) const PATCH_PX: usize = 5;
-/// Pixels of the same label around a window: at its border, a pixel sees two materials.
-const MARGIN_PX: usize = 1;
 
 /// Finds windows; working memory.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +15,7 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// First pixels (row, column) of windows that lie with their margin in one label above 0 and do not overlap; taken
+    /// First pixels (row, column) of windows that lie in one label above 0 and do not overlap; taken
     /// row by row, the first that fits.
     pub(super) fn find(&mut self, target: &Plane<u8>) -> &[(usize, usize)] {
         let shape = target.shape();
@@ -37,8 +35,8 @@ impl Patches {
             } else {
                 1
             };
-            if usize::from(self.squares[index]) >= PATCH_PX + 2 * MARGIN_PX {
-                self.take((row + 1 - PATCH_PX - MARGIN_PX, column + 1 - PATCH_PX - MARGIN_PX), width);
+            if usize::from(self.squares[index]) >= PATCH_PX {
+                self.take((row + 1 - PATCH_PX, column + 1 - PATCH_PX), width);
             }
         }
         &self.found
@@ -61,16 +59,16 @@ mod tests {
     use crate::plane::Shape;
 
     #[test]
-    fn windows_keep_clear_of_the_border_and_of_each_other() {
-        // Two labels side by side, 8 and 13 columns wide, with a hole.
-        let target = Plane::from_fn(Shape::new(9, 21), |row, column| match (row, column) {
-            (8, 20) => 0,
-            (_, 0..8) => 1,
+    fn windows_lie_in_one_label_and_clear_of_each_other() {
+        // Two labels side by side, 6 and 11 columns wide, with a hole that a window would reach.
+        let target = Plane::from_fn(Shape::new(7, 17), |row, column| match (row, column) {
+            (0, 16) => 0,
+            (_, 0..6) => 1,
             _ => 2,
         });
         let mut patches = Patches::default();
-        assert_eq!(patches.find(&target), [(1, 1), (1, 9), (1, 14)]);
-        assert_eq!(patches.find(&Plane::filled(Shape::new(6, 40), 1)), []);
+        assert_eq!(patches.find(&target), [(0, 0), (0, 6), (0, 11)]);
+        assert_eq!(patches.find(&Plane::filled(Shape::new(4, 40), 1)), []);
         assert_eq!(patches.find(&Plane::filled(Shape::new(7, 7), 0)), []);
     }
 }

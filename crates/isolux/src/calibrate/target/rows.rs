@@ -124,6 +124,7 @@ fn model(
         }),
         profile: Some(places),
         angle: if has_angle { AngleModel::Free } else { AngleModel::Absent },
+        smoothness: 1.0,
     }
 }
 
