@@ -3,7 +3,7 @@
 //! On a plane, the inverse depth is an affine function of the image: `1/z = a x + b y + c`, with the ray (x, y, 1), and
 //! (a, b, c) is the normal. So a fit of 1/z is a linear one, without a bias from the slant. Each window holds 9×9
 //! samples; where the distances are noisy, they are farther apart. A window reaches across edges of depth, so the
-//! fit is robust: it starts with what a surface through the middle pixel could hold at all, inclined by up to 75°,
+//! fit is robust: it starts in the window's inner half with what a surface through the middle pixel could hold at all,
 //! and closes in on the plane that the majority lies on (Tukey's biweight, the cutoff at three times the weighted
 //! root mean square, at best halved from round to round).
 
@@ -22,13 +22,21 @@ const NARROWEST: f64 = 0.034;
 const WIDEST_STEP: i64 = 5;
 /// Predicted error of the slant that widens the window, rad.
 const LARGEST_ERROR: f64 = 0.02;
-/// Tangent of the steepest surface that a fit starts with: 75°.
-const STEEPEST: f64 = 3.7;
-const ROUNDS: usize = 5;
+/// Samples to either side with which a fit starts: the window's inner half, which an edge reaches less often.
+const NEAR_REACH: i64 = 2;
+/// Tangent of the steepest surface that a fit starts with: 68°.
+const STEEPEST: f64 = 2.5;
+/// Standard deviations of a pixel's distance, before it was denoised, that a fit starts with besides.
+const NOISE_MARGIN: f64 = 1.0;
+/// Larger relative deviations do not widen the start: they would let in everything.
+const LARGEST_NOISE: f64 = 0.1;
+/// Rounds with the inner half, and all.
+const NEAR_ROUNDS: usize = 2;
+const ROUNDS: usize = 6;
 /// A cutoff is never less than this share of 1/z: what cameras' distances err by on any surface.
 const LEAST_CUTOFF: f64 = 0.004;
-/// Samples that a plane needs.
-const LEAST_SAMPLES: u32 = 12;
+/// Samples that a plane needs: as many as the inner half holds in the image's corner.
+const LEAST_SAMPLES: u32 = 9;
 /// Least ratio of the determinant of the samples' spread to the square of half its trace: a line has no plane.
 const LEAST_SPREAD: f64 = 0.02;
 
@@ -173,37 +181,39 @@ impl Field<'_> {
     fn facet(&self, row: usize, column: usize, step: i64, noise: f64) -> Option<Facet> {
         let middle = f64::from(self.inverse_depth[row * self.shape.width + column]);
         let focal = self.intrinsics.fx.min(self.intrinsics.fy);
-        let mut cutoff = middle * (STEEPEST * (REACH * step) as f64 / focal + 3.0 * noise.min(0.1));
+        let near = STEEPEST * (NEAR_REACH * step) as f64 / focal;
+        let mut cutoff = middle * (near + NOISE_MARGIN * noise.min(LARGEST_NOISE));
         let mut facet = Facet { a: 0.0, b: 0.0, c: middle };
         for round in 0..ROUNDS {
-            let sums = self.sums((row, column), step, facet, cutoff);
+            let reach = if round < NEAR_ROUNDS { NEAR_REACH } else { REACH };
+            let sums = self.sums((row, column), reach, step, facet, cutoff);
             let before = facet;
             facet = sums.corrected(facet)?;
             let closest = cutoff <= LEAST_CUTOFF * middle * 1.001;
-            if closest && facet.is_close_to(before) {
+            if closest && round >= NEAR_ROUNDS && facet.is_close_to(before) {
                 break;
             }
-            if round > 0 {
-                let closer = 3.0 * sums.root_mean_square();
-                cutoff = closer.clamp(0.5 * cutoff, cutoff).max(LEAST_CUTOFF * middle);
-            }
+            // A plane that half of the window has told is less sure where the window widens.
+            let widens = if round + 1 == NEAR_ROUNDS { 1.5 } else { 1.0 };
+            let closer = 3.0 * sums.root_mean_square() * widens;
+            cutoff = closer.clamp(0.5 * cutoff, cutoff).max(LEAST_CUTOFF * middle);
         }
         // A pixel that its own plane leaves out lies on an edge or is an outlier: it has no normal.
         ((middle - facet.c).abs() < cutoff.max(3.0 * noise * middle)).then_some(facet)
     }
 
     /// Weighted moments of the samples and of their residuals from `known`.
-    fn sums(&self, (row, column): (usize, usize), step: i64, known: Facet, cutoff: f64) -> Sums {
+    fn sums(&self, (row, column): (usize, usize), reach: i64, step: i64, known: Facet, cutoff: f64) -> Sums {
         let (height, width) = (self.shape.height as i64, self.shape.width as i64);
         let inverse_square = 1.0 / (cutoff * cutoff);
         let mut sums = Sums::default();
-        for i in -REACH..=REACH {
+        for i in -reach..=reach {
             let y = row as i64 + i * step;
             if y < 0 || y >= height {
                 continue;
             }
             let dy = (i * step) as f64 / self.intrinsics.fy;
-            for j in -REACH..=REACH {
+            for j in -reach..=reach {
                 let x = column as i64 + j * step;
                 if x < 0 || x >= width {
                     continue;
@@ -318,9 +328,9 @@ mod tests {
             let distances: Vec<f32> = truth.iter().map(|(d, _)| *d as f32).collect();
             let cosines = cosines(SHAPE, &distances, 0.0);
             for (found, (d, cosine)) in cosines.iter().zip(&truth) {
-                // 1/z in f32, 6e-8 of it, over a window of 1/25 rad: 2e-6 of slant. Beyond 75° nothing is promised.
+                // 1/z in f32, 6e-8 of it, over a window of 1/25 rad: 2e-6 of slant. Beyond 68° nothing is promised.
                 assert!(
-                    *d <= 0.0 || *cosine < 0.26 || (f64::from(*found) - cosine).abs() < 1e-4,
+                    *d <= 0.0 || *cosine < 0.37 || (f64::from(*found) - cosine).abs() < 1e-4,
                     "{found} {cosine}"
                 );
             }

@@ -9,3 +9,4 @@ pub mod figure;
 pub mod figures;
 pub mod held_out;
 pub mod still;
+pub mod targets;
