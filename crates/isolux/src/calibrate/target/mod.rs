@@ -7,6 +7,8 @@ mod patches;
 mod report;
 mod rows;
 mod terms;
+#[cfg(test)]
+mod tests;
 
 pub(super) use fit::fit;
 pub use report::{SurfaceUse, TargetReport};
