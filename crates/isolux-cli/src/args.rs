@@ -77,8 +77,7 @@ pub(crate) struct InfoArgs {
 #[command(after_help = "Examples:\n  \
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
     isolux calibrate --exposure-sweep wall --skip-frames 50 -o CAMERA.json\n  \
-    isolux calibrate --distance-sweep board --exclude-time-us 200 -o CAMERA.json\n  \
-    isolux calibrate --exposure-sweep wall --target tilted-board -o CAMERA.json")]
+    isolux calibrate --distance-sweep board --exclude-time-us 200 -o CAMERA.json")]
 pub(crate) struct CalibrateArgs {
     /// A still scene, integration time varied; may be given several times
     #[arg(long, value_name = "REC")]
@@ -126,7 +125,7 @@ pub(crate) struct CalibrateArgs {
     isolux standardize desk -c CAMERA.json -o desk-standardized.npz --keep-input\n  \
     isolux standardize desk -c CAMERA.json -o out --method paper --specular none\n  \
     isolux standardize desk -o out --time linear --distance none\n  \
-    isolux standardize desk -c CAMERA.json -o out --denoise wiener --angle on")]
+    isolux standardize desk -c CAMERA.json -o out --denoise wiener")]
 pub(crate) struct StandardizeArgs {
     /// The recording
     #[arg(value_name = "REC")]
