@@ -27,7 +27,7 @@ proptest! {
     ) {
         let reference = Reference { integration_time_us: Some(time), distance_m };
         let mut written = Calibration::new(camera, reference);
-        written.terms = Terms { lut, cubic, spline };
+        written.terms = Terms { lut, cubic, spline, ..Terms::default() };
         if let Some(spline) = & written.terms.spline {
             written.reference.distance_m = spline.reference_distance_m;
         }
