@@ -61,16 +61,19 @@ pub(crate) struct InfoArgs {
     pub(crate) json: bool,
 }
 
-/// Fit a camera's calibration from sweeps
+/// Fit a camera's calibration from sweeps and targets
 ///
 /// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), the
 /// compression of each pixel (`response`: the more channels, the better) and the noise of the amplitude (`noise`), a
-/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance. What no recording determines is
-/// left out.
+/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance, a target the smooth law, the
+/// illumination profile (`profile`) and the angle of incidence (`angle`) together. What no recording determines is
+/// left out, and why is said.
 ///
 /// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
 /// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
-/// distances and a few integration times; the reference distance among them.
+/// distances and a few integration times; the reference distance among them. Target: any recording with the `target`
+/// channel (equal labels above 0 are one material); best a matt board, carried through the whole image from near to
+/// far and tilted by up to 60°.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
@@ -83,6 +86,9 @@ pub(crate) struct CalibrateArgs {
     /// A flat target at several distances; may be given several times
     #[arg(long, value_name = "REC")]
     pub(crate) distance_sweep: Vec<PathBuf>,
+    /// A recording with labelled materials in any pose; may be given several times
+    #[arg(long, value_name = "REC")]
+    pub(crate) target: Vec<PathBuf>,
     /// The calibration file to write
     #[arg(short, long, value_name = "CAMERA.json")]
     pub(crate) output: PathBuf,

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use isolux::standardize::Stream;
 use isolux::{Calibration, Channels, Frame};
-use isolux_io::Recording;
+use isolux_io::{Metadata, Recording};
 
 use crate::failure::{Failure, Outcome};
 use crate::{console, interrupt};
@@ -32,4 +33,13 @@ pub(crate) fn for_each(
 /// Reads the calibration, if one is given.
 pub(crate) fn calibration(path: Option<&Path>) -> Outcome<Option<Calibration>> {
     path.map(isolux_io::read_calibration).transpose().map_err(Failure::from)
+}
+
+/// What a plan must know of a recording.
+pub(crate) fn stream(metadata: &Metadata) -> Stream {
+    Stream {
+        channels: metadata.available,
+        shape: Some(metadata.shape),
+        intrinsics: metadata.info.intrinsics.as_ref().map(|intrinsics| intrinsics.pinhole),
+    }
 }

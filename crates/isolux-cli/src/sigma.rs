@@ -84,7 +84,7 @@ pub(crate) fn plan(
     if choice.sigma == SigmaStep::Required && !known && available.contains(Channels::AMPLITUDE) {
         choice.noise = Some(estimate(recording)?);
     }
-    let standardizer = Standardizer::plan(&choice, calibration, available)?;
+    let standardizer = Standardizer::plan_for(&choice, calibration, frames::stream(recording.metadata()))?;
     standardizer.notes().iter().for_each(console::note);
     Ok(standardizer)
 }

@@ -2,7 +2,9 @@
 
 use clap::{Args, ValueEnum};
 use isolux::specular::{HistogramRule, KneeRule, PercentRule, SigmaRule};
-use isolux::standardize::{DenoiseStep, DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::standardize::{
+    AngleStep, DenoiseStep, DistanceStep, Method, ProfileStep, SpecularStep, TimeStep,
+};
 use isolux::terms::response::ResponseTier;
 use isolux::{Choice, DenoiseRule, SpecularRule};
 
@@ -29,6 +31,13 @@ pub(crate) struct StepArgs {
     /// Denoise the distance before it scales, where a distance step is applied [default: none]
     #[arg(long, value_enum)]
     pub(crate) denoise: Option<DenoiseArg>,
+    /// Take the illumination profile out, where the calibration holds it [default: on with --method best]
+    #[arg(long, value_enum)]
+    pub(crate) profile: Option<SwitchArg>,
+    /// Take the angle of incidence out: the calibration's exponent of the cosine, Lambert's where it holds none; needs
+    /// intrinsics [default: off]
+    #[arg(long, value_enum)]
+    pub(crate) angle: Option<SwitchArg>,
     /// Step for highlights [default: histogram]
     #[arg(long, value_enum)]
     pub(crate) specular: Option<SpecularArg>,
@@ -116,6 +125,14 @@ pub(crate) enum DenoiseArg {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SwitchArg {
+    /// Take it out
+    On,
+    /// Leave it in
+    Off,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SpecularArg {
     /// Limit at the highest value with enough pixels
     Histogram,
@@ -156,8 +173,16 @@ impl StepArgs {
             DenoiseArg::Plane => DenoiseStep::Smooth(DenoiseRule::Plane),
             DenoiseArg::Temporal => DenoiseStep::Smooth(DenoiseRule::Temporal),
         });
-        let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
+        let profile = self.profile.map(|switch| match switch {
+            SwitchArg::On => ProfileStep::On,
+            SwitchArg::Off => ProfileStep::Off,
+        });
+        let angle = self.angle.map(|switch| match switch {
+            SwitchArg::On => AngleStep::On,
+            SwitchArg::Off => AngleStep::Off,
+        });
         let specular = Some(self.specular()?);
+        let low_signal_below_dn = self.low_signal_dn.map(|dn| dn as f32);
         let response_tier = self.tier()?;
         let mut choice = Choice {
             method,
@@ -165,6 +190,8 @@ impl StepArgs {
             response_tier,
             denoise,
             distance,
+            profile,
+            angle,
             specular,
             low_signal_below_dn,
             ..Choice::default()

@@ -29,7 +29,7 @@ proptest! {
     ) {
         let reference = Reference { integration_time_us: Some(time), distance_m };
         let mut written = Calibration::new(camera, reference);
-        written.terms = Terms { lut, response, cubic, spline, noise };
+        written.terms = Terms { lut, response, cubic, spline, noise, ..Terms::default() };
         if let Some(spline) = & written.terms.spline {
             written.reference.distance_m = spline.reference_distance_m;
         }

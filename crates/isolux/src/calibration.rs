@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Cubic, Lut, Noise, ParameterError, Response, Spline, require};
+use crate::terms::{Angle, Cubic, Lut, Noise, ParameterError, Profile, Response, Spline, require};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -70,6 +70,12 @@ pub struct Terms {
     /// Distance, a smooth law around the inverse square.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spline: Option<Spline>,
+    /// Illumination profile, over the image.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
+    /// Angle of incidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Angle>,
     /// Noise of the amplitude.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
@@ -155,6 +161,8 @@ impl Calibration {
         self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
         self.terms.response.as_ref().map_or(Ok(()), Response::check)?;
         self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
+        self.terms.profile.as_ref().map_or(Ok(()), Profile::check)?;
+        self.terms.angle.as_ref().map_or(Ok(()), Angle::check)?;
         self.terms.noise.as_ref().map_or(Ok(()), Noise::check)?;
         let Some(spline) = &self.terms.spline else { return Ok(()) };
         let gauge_m = spline.reference_distance_m;

@@ -22,6 +22,9 @@ bitflags! {
         const DISTANCE_OUT_OF_RANGE = 1 << 4;
         /// The value was limited as a specular highlight.
         const SPECULAR = 1 << 5;
+        /// The pixel lies outside the supported part of the illumination profile, or its surface is steeper than
+        /// the angle term has seen; the value goes on with the nearest factor that was.
+        const ILLUMINATION_OUT_OF_RANGE = 1 << 6;
     }
 }
 
@@ -46,6 +49,7 @@ mod tests {
             ("TIME_OUT_OF_RANGE", 3),
             ("DISTANCE_OUT_OF_RANGE", 4),
             ("SPECULAR", 5),
+            ("ILLUMINATION_OUT_OF_RANGE", 6),
         ];
         assert_eq!(legend, expected);
     }

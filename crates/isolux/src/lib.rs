@@ -40,6 +40,7 @@ pub mod geometry;
 mod hash;
 pub mod motion;
 mod noise;
+mod normals;
 pub mod phase;
 pub mod plane;
 mod quantile;

@@ -4,13 +4,13 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use isolux::specular::{KneeRule, PercentRule, SigmaRule};
-use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep, TimeStep};
-use isolux::terms::NoiseModel;
+use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, SigmaStep, SpecularStep, Stream, TimeStep};
 use isolux::terms::noise::AmplitudeNoise;
 use isolux::terms::response::ResponseTier;
+use isolux::terms::{FitQuality, NoiseModel, Profile};
 use isolux::{
-    Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Shape, SpecularRule, Standardized,
-    Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Intrinsics, Plane, Reference, Shape,
+    SpecularRule, Standardized, Standardizer,
 };
 
 /// Counts the allocations of each thread.
@@ -140,6 +140,41 @@ fn nothing_is_allocated_per_denoised_frame() {
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{rule:?}");
     }
+}
+
+#[test]
+fn nothing_is_allocated_per_frame_with_profile_and_angle() {
+    let shape = Shape::new(48, 64);
+    let intrinsics = Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 };
+    let stream = Stream {
+        channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
+        shape: Some(shape),
+        intrinsics: Some(intrinsics),
+    };
+    let profile = Profile {
+        version: 1,
+        height: shape.height,
+        width: shape.width,
+        origin_px: [23.5, 31.5],
+        radial: [-0.5, 0.0],
+        tensor: vec![0.0; 48],
+        support: vec!["#".repeat(16); 12],
+        fitted_on: Vec::new(),
+        fit: FitQuality { points: 1, residual: 0.0, held_out_residual: None },
+        warnings: Vec::new(),
+    };
+    let mut calibration = Calibration::new(None, Reference::default());
+    calibration.terms.profile = Some(profile);
+    let choice = Choice { angle: Some(AngleStep::On), ..Choice::default() };
+    let standardizer = Standardizer::plan_for(&choice, Some(&calibration), stream).unwrap();
+    let frames: Vec<Frame> = [(900, false), (0, true)].map(|(spread, map)| frame(shape, spread, map)).into();
+    let mut out = Standardized::new(shape);
+    standardizer.apply(&frames[0], &mut out).unwrap();
+    let before = ALLOCATIONS.get();
+    for frame in &frames {
+        standardizer.apply(frame, &mut out).unwrap();
+    }
+    assert_eq!(ALLOCATIONS.get() - before, 0);
 }
 
 #[test]

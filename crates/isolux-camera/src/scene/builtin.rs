@@ -20,6 +20,7 @@ const SCENES: Catalogue = Catalogue {
         "board-distances-unguarded",
         "patches",
         "patches-smoke",
+        "target-board",
         "highlights",
         "office-desk",
         "office-shelf",

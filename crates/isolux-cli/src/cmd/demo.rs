@@ -152,8 +152,11 @@ impl Demo {
         let (calibration, report) = calibrate::fit(
             &CalibrateSettings::default(),
             None,
-            &[self.recording(EXPOSURE_SWEEP)],
-            &[self.recording(DISTANCE_SWEEP)],
+            calibrate::Inputs {
+                exposure_sweeps: &[self.recording(EXPOSURE_SWEEP)],
+                distance_sweeps: &[self.recording(DISTANCE_SWEEP)],
+                targets: &[],
+            },
         )?;
         isolux_io::write_calibration(&calibration, &self.folder.join("CAMERA.json"))?;
         console::print("Calibration, from a wall over integration times and a board over distances\n")?;

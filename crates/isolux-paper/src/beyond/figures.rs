@@ -8,7 +8,7 @@ use super::denoise::{self, Bars};
 use super::figure::{Aim, Figure, Unit};
 use super::held_out::{CAMERAS, HeldOut};
 use super::sigma::{self, SigmaCase};
-use super::{decay, still};
+use super::{decay, still, targets};
 use crate::error::PaperError;
 
 /// Measures everything that needs no recording. `progress` is told what is being done.
@@ -23,6 +23,8 @@ pub fn simulated(progress: &mut dyn FnMut(&str)) -> Result<Vec<Figure>, PaperErr
     figures.extend(decays(&cameras)?);
     progress("still scenes");
     figures.extend(still_scenes(&cameras)?);
+    progress("patches at all depths, tilts and places");
+    figures.extend(patches()?);
     progress("denoising");
     figures.extend(denoising()?);
     progress("predicted standard deviations");
@@ -65,6 +67,27 @@ fn still_scenes(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
         }
     }
     Ok(figures)
+}
+
+/// Every tenth of the 135 frames of the patches, worst camera.
+fn patches() -> Result<Vec<Figure>, PaperError> {
+    let mut measured = Vec::new();
+    for seed in CAMERAS {
+        let (calibration, _) = targets::calibrate_random(seed)?;
+        measured.push(targets::patches(seed, &calibration, 10)?);
+    }
+    let worst = |value: fn(&targets::PatchFigures) -> f64| largest(measured.iter().map(value));
+    let spread =
+        "spread of ln(value / reflectivity) over patches, depths, tilts and places beside the noise floor";
+    let (ours, textbook) = (worst(|f| f.deviation / f.floor), worst(|f| f.textbook / f.floor));
+    let valid = measured.iter().map(|figures| figures.valid).fold(f64::INFINITY, f64::min);
+    let what = |name: &str| format!("{spread}, worst camera: {name}");
+    let share = "valid pixels, same frames, worst camera";
+    Ok(vec![
+        Figure::new("profile", what("linear, square"), textbook, Unit::Ratio, Aim::None),
+        Figure::new("profile", what("spline, profile, angle, wiener"), ours, Unit::Ratio, Aim::AtMost(1.5)),
+        Figure::new("profile", share, valid, Unit::Percent, Aim::AtLeast(0.85)),
+    ])
 }
 
 fn denoising() -> Result<Vec<Figure>, PaperError> {

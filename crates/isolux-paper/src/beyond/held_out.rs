@@ -1,7 +1,7 @@
 //! Cameras that no preset is like, calibrated from sweeps as a user would record them. What is measured on them
 //! afterwards are other frames than those of the fit.
 
-use isolux::calibrate::{self, CalibrateSettings, DistanceSweep, ExposureSweep};
+use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureFit, ExposureSweep, Measurements};
 use isolux::standardize::FrameLineariser;
 use isolux::{Calibration, Channels, Frame};
 use isolux_camera::scene::run::RegisterRange;
@@ -24,6 +24,9 @@ pub struct HeldOut {
     pub model: CameraModel,
     /// Fitted on a wall over its register and a board over distances.
     pub calibration: Calibration,
+    /// The same as a camera gives it that delivers amplitude and distance alone: the spline is not that of linear
+    /// amplitudes.
+    pub from_amplitude: Calibration,
 }
 
 impl HeldOut {
@@ -41,29 +44,30 @@ impl HeldOut {
         for_each(&Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?, |_, simulated| {
             Ok(wall.push(&simulated.frame)?)
         })?;
-        let name = Some(model.name.clone());
-        let exposure = vec![wall.finish()];
-        let (first, _) = calibrate::fit(&settings, name.clone(), exposure.clone(), Vec::new())?;
+        let exposure = ExposureFit::new(&settings, vec![wall.finish()])?;
         let channels = Channels::PHASE_SAMPLES | Channels::INTENSITY;
-        let mut lineariser = first.terms.response.as_ref().and_then(|r| FrameLineariser::new(r, channels));
+        let mut lineariser =
+            exposure.response().and_then(|response| FrameLineariser::new(response, channels));
         let mut board = DistanceSweep::new("board-distances", &settings);
-        let mut linear = DistanceSweep::new("board-distances", &settings);
+        let mut linear_board = board.clone();
         let scene = Scene::builtin("board-distances")?;
         for_each(&Simulation::new(cropped(&model), scene, FITTED)?, |_, simulated| {
             board.push(&simulated.frame)?;
             if let Some(lineariser) = &mut lineariser {
                 let mut frame = simulated.frame.clone();
                 lineariser.linearise(&mut frame)?;
-                linear.push(&frame)?;
+                linear_board.push(&frame)?;
             }
             Ok(())
         })?;
-        let (mut calibration, _) = calibrate::fit(&settings, name, exposure, vec![board.finish()])?;
-        let (lin, rep) = calibrate::fit(&settings, None, Vec::new(), vec![linear.finish()])?;
-        for (d,u) in &rep.decays { eprintln!("{:?} {} {:?}", d.integration_time_us, d.points.len(), u); }
-        eprintln!("{:?} {:?}", lin.terms.spline.as_ref().map(|s| s.fit.clone()), calibration.terms.spline.as_ref().map(|s| s.fit.clone()));
-        calibration.terms.spline = lin.terms.spline;
-        Ok(Self { model, calibration })
+        let delivered = Measurements { distance_sweeps: vec![board.finish()], ..Measurements::default() };
+        let linear = lineariser.map(|_| linear_board.finish());
+        let measured =
+            Measurements { linear_distance_sweeps: linear.into_iter().collect(), ..delivered.clone() };
+        let name = Some(model.name.clone());
+        let (from_amplitude, _) = exposure.clone().and(&settings, name.clone(), delivered)?;
+        let (calibration, _) = exposure.and(&settings, name, measured)?;
+        Ok(Self { model, calibration, from_amplitude })
     }
 }
 

@@ -3,6 +3,7 @@
 
 pub mod bracket;
 pub mod chains;
+pub mod checkerboard;
 pub mod decay;
 pub mod denoise;
 pub mod figure;
@@ -12,3 +13,4 @@ mod noise_free;
 pub mod response;
 pub mod sigma;
 pub mod still;
+pub mod targets;

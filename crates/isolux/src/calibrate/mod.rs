@@ -3,9 +3,11 @@
 mod distance_sweep;
 mod evidence;
 mod exposure_sweep;
+pub mod joint;
 mod noise_survey;
 mod response;
 mod runs;
+mod target;
 mod warning;
 mod window;
 
@@ -13,15 +15,17 @@ pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use evidence::ResponseEvidence;
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
 pub use noise_survey::{NoiseCells, NoiseSurvey};
+pub use target::{SurfaceUse, TargetReport, TargetSweep, TargetWindows, label_windows};
 pub use warning::FitWarning;
 
 use crate::calibration::{Calibration, NoiseFloor, Reference};
 use crate::frame::IntegrationTime;
 use crate::plane::ShapeError;
+use crate::standardize::StandardizeError;
 use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
 use crate::terms::lut::{ExposureSample, LutAnswer, LutError};
 use crate::terms::spline::SplineUse;
-use crate::terms::{Cubic, Lut, Spline};
+use crate::terms::{Cubic, Lut, Response, Spline};
 
 /// What the user decides about a calibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,8 +95,34 @@ pub enum CalibrateError {
         /// The plane.
         source: ShapeError,
     },
+    /// A target's recording without labels.
+    #[error(
+        "frame {frame}: no target channel found, one expected: its labels say which pixels are one material"
+    )]
+    NoTarget {
+        /// Frame number, from 0.
+        frame: usize,
+    },
+    /// Targets' recordings of unlike formats.
+    #[error(
+        "target {recording}: images of {found} found, {expected} expected: a profile holds for one format"
+    )]
+    TargetShape {
+        /// The recording.
+        recording: String,
+        /// Its shape.
+        found: String,
+        /// That of the first.
+        expected: String,
+    },
+    /// The joint model could not be fitted.
+    #[error("targets: {0}")]
+    Target(joint::JointError),
+    /// A frame that the response cannot make linear.
+    #[error("linear amplitude: {0}")]
+    Linear(#[from] StandardizeError),
     /// No sweep given.
-    #[error("no recording given: calibrate needs at least one exposure sweep or distance sweep")]
+    #[error("no recording given: calibrate needs at least one exposure sweep, distance sweep or target")]
     NothingToFit,
     /// The table could not be fitted.
     #[error("exposure sweep {recording}: {source}")]
@@ -134,8 +164,31 @@ pub struct FitReport {
     pub decays: Vec<(Decay, DecayUse)>,
     /// What became of the same decays in the spline; empty where there is none.
     pub spline_uses: Vec<SplineUse>,
+    /// What the fit of targets found.
+    pub target: Option<TargetReport>,
     /// Everything that the user should know or record better, also in the calibration's terms.
     pub warnings: Vec<FitWarning>,
+}
+
+/// Measured recordings of what the time does not tell, by what they are.
+#[derive(Clone, Debug, Default)]
+pub struct Measurements {
+    /// A flat target at several distances, as it was delivered: the paper's cubic is fitted on it.
+    pub distance_sweeps: Vec<ReferenceDecays>,
+    /// The same sweeps after [`FrameLineariser`](crate::standardize::FrameLineariser), where the response allows it: the
+    /// spline is then fitted on these.
+    pub linear_distance_sweeps: Vec<ReferenceDecays>,
+    /// Labelled targets in any pose, linear where the response allows it.
+    pub targets: Vec<TargetWindows>,
+}
+
+/// What exposure sweeps determine: the first stage of a calibration, since whatever is fitted after it needs the
+/// response to be linear.
+#[derive(Clone, Debug)]
+pub struct ExposureFit {
+    calibration: Calibration,
+    curves: Vec<ExposureCurve>,
+    warnings: Vec<FitWarning>,
 }
 
 /// Fits every term that the sweeps determine.
@@ -148,32 +201,74 @@ pub fn fit(
     exposure_curves: Vec<ExposureCurve>,
     distance_sweeps: Vec<ReferenceDecays>,
 ) -> Result<(Calibration, FitReport), CalibrateError> {
-    if exposure_curves.is_empty() && distance_sweeps.is_empty() {
-        return Err(CalibrateError::NothingToFit);
-    }
-    let mut calibration = Calibration::new(camera, settings.reference);
-    let mut warnings = Vec::new();
-    if !exposure_curves.is_empty() {
-        let lut = fit_lut(settings, &exposure_curves, &mut warnings)?;
-        calibration.terms.response = response::fit_response(settings, &exposure_curves, &lut, &mut warnings);
+    let measured = Measurements { distance_sweeps, ..Measurements::default() };
+    ExposureFit::new(settings, exposure_curves)?.and(settings, camera, measured)
+}
+
+impl ExposureFit {
+    /// Fits every term that exposure sweeps determine; without one, none.
+    ///
+    /// # Errors
+    /// [`CalibrateError::Lut`] when a sweep has no table.
+    pub fn new(settings: &CalibrateSettings, curves: Vec<ExposureCurve>) -> Result<Self, CalibrateError> {
+        let mut calibration = Calibration::new(None, settings.reference);
+        let mut warnings = Vec::new();
+        if curves.is_empty() {
+            // Nothing says what the amplitudes of another time would be.
+            calibration.reference.integration_time_us = None;
+            return Ok(Self { calibration, curves, warnings });
+        }
+        let lut = fit_lut(settings, &curves, &mut warnings)?;
+        calibration.terms.response = response::fit_response(settings, &curves, &lut, &mut warnings);
         calibration.terms.lut = Some(lut);
-        let floors = exposure_curves.iter().filter_map(|curve| curve.noise_floor);
+        let floors = curves.iter().filter_map(|curve| curve.noise_floor);
         calibration.noise_floor =
             floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
-        let sources = exposure_curves.iter().map(|curve| curve.source.clone()).collect();
+        let sources = curves.iter().map(|curve| curve.source.clone()).collect();
         // A wall's texture would pass for noise.
-        let repeated = exposure_curves.iter().map(|curve| &curve.noise).filter(|noise| !noise.spatial);
+        let repeated = curves.iter().map(|curve| &curve.noise).filter(|noise| !noise.spatial);
         calibration.terms.noise = NoiseCells::merged(repeated).fit(sources);
+        Ok(Self { calibration, curves, warnings })
     }
-    if calibration.terms.lut.is_none() {
-        // Nothing says what the amplitudes of another time would be.
-        calibration.reference.integration_time_us = None;
+
+    /// The response that was fitted.
+    #[must_use]
+    pub fn response(&self) -> Option<&Response> {
+        self.calibration.terms.response.as_ref()
     }
-    let mut report = FitReport { exposure_curves, decays: Vec::new(), spline_uses: Vec::new(), warnings };
-    if !distance_sweeps.is_empty() {
-        fit_distance(settings, distance_sweeps, &mut calibration, &mut report)?;
+
+    /// Fits every other term that the recordings determine, for the camera of this name.
+    ///
+    /// # Errors
+    /// [`CalibrateError`] when no recording is given or a term cannot be fitted from what is there.
+    pub fn and(
+        self,
+        settings: &CalibrateSettings,
+        camera: Option<String>,
+        measured: Measurements,
+    ) -> Result<(Calibration, FitReport), CalibrateError> {
+        let Self { mut calibration, curves, warnings } = self;
+        calibration.camera = camera;
+        let Measurements { distance_sweeps, linear_distance_sweeps, targets } = measured;
+        if curves.is_empty() && distance_sweeps.is_empty() && targets.is_empty() {
+            return Err(CalibrateError::NothingToFit);
+        }
+        let mut report = FitReport {
+            exposure_curves: curves,
+            decays: Vec::new(),
+            spline_uses: Vec::new(),
+            target: None,
+            warnings,
+        };
+        if !distance_sweeps.is_empty() {
+            fit_distance(settings, distance_sweeps, linear_distance_sweeps, &mut calibration, &mut report)?;
+        }
+        if !targets.is_empty() {
+            let found = target::fit(settings, &targets, &mut calibration, &mut report.warnings)?;
+            report.target = Some(found);
+        }
+        Ok((calibration, report))
     }
-    Ok((calibration, report))
 }
 
 /// One table per sweep, then their geometric mean. Sweeps at unlike walls differ by a factor, which the normalization
@@ -231,10 +326,12 @@ fn merge_samples(tables: &[Lut]) -> Vec<ExposureSample> {
     times.into_iter().filter_map(sample).collect()
 }
 
-/// Cubic and spline of the same decays. A spline that cannot be fitted is a warning: the cubic is there.
+/// Cubic and spline of the same sweeps, the spline of the linear decays where there are any. A spline that cannot be
+/// fitted is a warning: the cubic is there.
 fn fit_distance(
     settings: &CalibrateSettings,
     sweeps: Vec<ReferenceDecays>,
+    linear_sweeps: Vec<ReferenceDecays>,
     calibration: &mut Calibration,
     report: &mut FitReport,
 ) -> Result<(), CalibrateError> {
@@ -253,9 +350,11 @@ fn fit_distance(
     found.extend(warning::about_decays(&decays, &uses));
     cubic.warnings = words(&found);
     cubic.fitted_on.clone_from(&sources);
-    match Spline::fit(&decays, reference_m, settings.modulation_frequency_hz) {
+    let linear: Vec<Decay> = linear_sweeps.into_iter().flat_map(|sweep| sweep.decays).collect();
+    let smooth = if linear.is_empty() { &decays } else { &linear };
+    match Spline::fit(smooth, reference_m, settings.modulation_frequency_hz) {
         Ok((mut spline, uses)) => {
-            let outliers = warning::about_outliers(&decays, &uses);
+            let outliers = warning::about_outliers(smooth, &uses);
             spline.warnings = words(&found[..about_sweeps]);
             spline.warnings.extend::<Vec<String>>(words(&outliers));
             spline.fitted_on = sources;

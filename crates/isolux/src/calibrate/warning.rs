@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::joint::Refusal;
 use crate::terms::cubic::{Decay, DecayUse, Scaling};
 use crate::terms::response::ResponseError;
 use crate::terms::spline::{SplineError, SplineUse};
@@ -150,6 +151,52 @@ pub enum FitWarning {
         /// All its positions.
         positions: usize,
     },
+    /// A target's recording without a window that can be measured.
+    NoWindows {
+        /// The recording.
+        recording: String,
+    },
+    /// A target's recording without intrinsics.
+    NoIntrinsics {
+        /// The recording.
+        recording: String,
+    },
+    /// A target's recording whose distances give no planes.
+    FewNormals {
+        /// The recording.
+        recording: String,
+        /// Windows without an angle.
+        windows: usize,
+        /// All its windows.
+        of: usize,
+    },
+    /// A material left out because of its gloss.
+    Glossy {
+        /// The recording.
+        recording: String,
+        /// Its label.
+        label: u8,
+        /// Exponent of its cosine.
+        exponent: f64,
+    },
+    /// A factor that the targets do not determine.
+    FactorRefused {
+        /// Why.
+        reason: Refusal,
+        /// Unknowns of the model beside the materials' brightnesses.
+        unknowns: usize,
+        /// Rank of its reduced normal matrix.
+        rank: usize,
+    },
+    /// The other factors were fitted with Lambert's cosine.
+    LambertAssumed,
+    /// A distance law that was seen, but not at the reference distance.
+    ReferenceNotSeen {
+        /// Reference, m.
+        reference_m: f64,
+        /// Distances that were seen, m.
+        seen_m: [f64; 2],
+    },
 }
 
 impl fmt::Display for FitWarning {
@@ -248,6 +295,37 @@ impl fmt::Display for FitWarning {
                 "distance sweep, {}: {outliers} of {positions} positions contradict the other times and do not count \
                  in the spline: saturated, or another target",
                 time(*integration_time_us)
+            ),
+            Self::NoWindows { recording } => write!(
+                f,
+                "{recording}: no window of 5×5 pixels inside a label of `target` that is measured, unsaturated and bright \
+                 enough: nothing to learn from it"
+            ),
+            Self::NoIntrinsics { recording } => write!(
+                f,
+                "{recording}: no intrinsics {{fx, fy, cx, cy}} in recording.json, so no angles of incidence: its windows \
+                 count for no angle"
+            ),
+            Self::FewNormals { recording, windows, of } => write!(
+                f,
+                "{recording}: {windows} of {of} windows lie on no plane: their distances are too noisy or too few"
+            ),
+            Self::Glossy { recording, label, exponent } => write!(
+                f,
+                "{recording}: label {label} left out, its amplitude goes with cos^{exponent:.1}θ: a glossy material has its \
+                 own angle law"
+            ),
+            Self::FactorRefused { reason, unknowns, rank } => {
+                write!(f, "targets: no {reason} (rank {rank} of {unknowns} unknowns)")
+            }
+            Self::LambertAssumed => f.write_str(
+                "targets: the other factors are fitted with Lambert's cosine, which was not measured: a glossy target \
+                 bends them",
+            ),
+            Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
+                f,
+                "targets: no spline, the targets were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance \
+                 of {reference_m} m: record there, or choose another with --reference-distance-m"
             ),
         }
     }

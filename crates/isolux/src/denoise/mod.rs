@@ -83,6 +83,8 @@ pub(crate) struct Denoiser {
     denoised_m: Vec<f32>,
     variance_left: Vec<f32>,
     noise: NoiseScale,
+    /// `σ_d² a²` of the last frame that was denoised by a rule that needs it, m² DN².
+    scale: f64,
     wiener: Wiener,
     guide: plane::Guide,
 }
@@ -131,17 +133,18 @@ impl Denoiser {
                 }
             }
             DenoiseRule::Wiener => {
-                let k = self.noise.estimate(image);
+                self.scale = self.noise.estimate(image);
                 match left {
                     Some(left) => {
-                        self.wiener.denoise(image, k, out, Some(&mut *left));
+                        self.wiener.denoise(image, self.scale, out, Some(&mut *left));
                         left.iter_mut().for_each(|left| *left = wiener::variance_left(*left));
                     }
-                    None => self.wiener.denoise(image, k, out, None),
+                    None => self.wiener.denoise(image, self.scale, out, None),
                 }
             }
             DenoiseRule::Plane => {
-                self.guide.denoise(image, self.noise.estimate(image), &mut self.wiener, out, left);
+                self.scale = self.noise.estimate(image);
+                self.guide.denoise(image, self.scale, &mut self.wiener, out, left);
             }
             // One frame is its own mean.
             DenoiseRule::Temporal => {
@@ -153,6 +156,12 @@ impl Denoiser {
         }
         keep_the_rest(out, distance_m.values());
         Denoised { distance_m: out, variance_left: &self.variance_left }
+    }
+
+    /// What the last [`Self::denoise`] by [`DenoiseRule::Wiener`] gave, and `σ_d² a²` (m² DN²) of the distances
+    /// before it.
+    pub(crate) fn wiener_result(&self) -> (&[f32], f64) {
+        (&self.denoised_m, self.scale)
     }
 }
 

@@ -1,6 +1,9 @@
 //! What the user asks for: a method, and single steps that override it.
 
 use crate::denoise::DenoiseRule;
+use crate::frame::Channels;
+use crate::geometry::Intrinsics;
+use crate::plane::Shape;
 use crate::specular::SpecularRule;
 use crate::terms::NoiseModel;
 use crate::terms::response::ResponseTier;
@@ -55,6 +58,24 @@ pub enum DistanceStep {
     None,
 }
 
+/// The step that takes the illumination profile out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProfileStep {
+    /// The calibration's profile.
+    On,
+    /// Leave it in.
+    Off,
+}
+
+/// The step that takes the angle of incidence out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleStep {
+    /// The calibration's exponent of the cosine; Lambert's where it holds none.
+    On,
+    /// Leave it in.
+    Off,
+}
+
 /// The step that limits highlights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpecularStep {
@@ -90,6 +111,10 @@ pub struct Choice {
     pub denoise: Option<DenoiseStep>,
     /// Distance.
     pub distance: Option<DistanceStep>,
+    /// Illumination profile.
+    pub profile: Option<ProfileStep>,
+    /// Angle of incidence; otherwise it is left in.
+    pub angle: Option<AngleStep>,
     /// Highlights.
     pub specular: Option<SpecularStep>,
     /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
@@ -101,4 +126,21 @@ pub struct Choice {
     /// Modulation frequency of the recording, Hz, for the prediction; otherwise the noise of the distances is
     /// estimated from each frame.
     pub modulation_frequency_hz: Option<f64>,
+}
+
+/// What a plan must know of the recording that it is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stream {
+    /// Channels that it has.
+    pub channels: Channels,
+    /// Height and width of its frames, where they are known beforehand.
+    pub shape: Option<Shape>,
+    /// Its intrinsics, which the angle step needs.
+    pub intrinsics: Option<Intrinsics>,
+}
+
+impl From<Channels> for Stream {
+    fn from(channels: Channels) -> Self {
+        Self { channels, shape: None, intrinsics: None }
+    }
 }

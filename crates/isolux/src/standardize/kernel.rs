@@ -48,13 +48,17 @@ pub(super) fn pointwise(
 
 /// The flag or none, without a branch.
 #[inline(always)]
-fn when(set: bool, flag: PixelFlags) -> PixelFlags {
+pub(super) fn when(set: bool, flag: PixelFlags) -> PixelFlags {
     PixelFlags::from_bits_retain(u16::from(set) * flag.bits())
 }
 
 /// What [`tally`] counts: pixels with each of these flags.
-pub(super) const TALLIES: [PixelFlags; 3] =
-    [PixelFlags::INVALID, PixelFlags::DISTANCE_OUT_OF_RANGE, PixelFlags::SPECULAR];
+pub(super) const TALLIES: [PixelFlags; 4] = [
+    PixelFlags::INVALID,
+    PixelFlags::DISTANCE_OUT_OF_RANGE,
+    PixelFlags::SPECULAR,
+    PixelFlags::ILLUMINATION_OUT_OF_RANGE,
+];
 
 /// Adds the counts of one block. They are kept in u16, the width of the flags, so that the loop vectorizes.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]

@@ -42,7 +42,10 @@ impl FrameLineariser {
     /// [`StandardizeError`] when the frame lacks the channel, or its planes differ in shape.
     pub fn linearise(&mut self, frame: &mut Frame) -> Result<(), StandardizeError> {
         frame.check_shapes()?;
-        let mut flags = std::mem::replace(&mut frame.flags, crate::Plane::filled(crate::Shape::new(0, 0), Default::default()));
+        let mut flags = std::mem::replace(
+            &mut frame.flags,
+            crate::Plane::filled(crate::Shape::new(0, 0), Default::default()),
+        );
         let repaired = self.linearised.fill(&self.lineariser, frame, flags.values_mut());
         frame.flags = flags;
         let repaired = repaired?;

@@ -1,6 +1,7 @@
 //! Standardizing frames: plan once, then apply to each frame without allocating.
 
 mod choice;
+mod illumination;
 mod kernel;
 mod linear_frame;
 mod linearise;
@@ -10,7 +11,10 @@ mod report;
 mod sigma;
 mod time;
 
-pub use choice::{Choice, DenoiseStep, DistanceStep, Method, SigmaStep, SpecularStep, TimeStep};
+pub use choice::{
+    AngleStep, Choice, DenoiseStep, DistanceStep, Method, ProfileStep, SigmaStep, SpecularStep, Stream,
+    TimeStep,
+};
 pub use linear_frame::FrameLineariser;
 pub use merge::{BracketMerge, MergeError};
 pub use report::{AppliedStep, Note, PlanError};
@@ -19,10 +23,12 @@ use crate::calibration::Calibration;
 use crate::denoise::{DenoiseRule, Denoiser, TemporalMean};
 use crate::flags::PixelFlags;
 use crate::frame::{Channels, Frame};
+use crate::normals::Incidence;
 use crate::plane::{Plane, Shape, ShapeError};
 use crate::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
 use crate::terms::DistanceGain;
+use illumination::Illumination;
 use kernel::{BLOCK, Block};
 use linearise::{Linearised, Lineariser, Repaired};
 use plan::Plan;
@@ -51,6 +57,7 @@ pub struct Standardized {
     quantiles: PositiveQuantiles,
     denoiser: Denoiser,
     linearised: Linearised,
+    incidence: Incidence,
 }
 
 /// What happened to one frame.
@@ -66,6 +73,8 @@ pub struct FrameSummary {
     pub time_extrapolated: usize,
     /// Pixels whose distance is outside the fitted range: continued as d² and flagged.
     pub distance_extrapolated: usize,
+    /// Pixels outside the support of the profile or steeper than the angle term has seen: continued and flagged.
+    pub illumination_extrapolated: usize,
     /// Pixels limited as specular.
     pub specular: usize,
     /// The value they were limited to, DN; `None` when the rule found no cutoff or there is no such step.
@@ -105,6 +114,16 @@ pub enum StandardizeError {
         /// Shape of the map.
         expected: Shape,
     },
+    /// The frame is not of the format that the illumination profile holds for.
+    #[error(
+        "a frame of {found} found, {expected} expected: the illumination profile holds for that format alone"
+    )]
+    ProfileFormat {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
     /// The plan smooths over frames, and only one was given.
     #[error(
         "one frame found, the mean distance over the last ones expected: the denoising step `temporal` needs it; \
@@ -124,6 +143,7 @@ impl Standardized {
             quantiles: PositiveQuantiles::new(),
             denoiser: Denoiser::default(),
             linearised: Linearised::new(),
+            incidence: Incidence::default(),
         }
     }
 
@@ -153,7 +173,20 @@ impl Standardizer {
         calibration: Option<&Calibration>,
         available: Channels,
     ) -> Result<Self, PlanError> {
-        Ok(Self { plan: Plan::new(choice, calibration, available)? })
+        Self::plan_for(choice, calibration, available.into())
+    }
+
+    /// Like [`Self::plan`], for a recording of which more is known than its channels: the step `angle` needs its
+    /// intrinsics, and the profile is for one image format.
+    ///
+    /// # Errors
+    /// [`PlanError`] when something asked for by name cannot be done.
+    pub fn plan_for(
+        choice: &Choice,
+        calibration: Option<&Calibration>,
+        stream: Stream,
+    ) -> Result<Self, PlanError> {
+        Ok(Self { plan: Plan::new(choice, calibration, stream)? })
     }
 
     /// The steps, in the order in which they are applied.
@@ -173,7 +206,8 @@ impl Standardizer {
     pub fn needed(&self) -> Channels {
         let mut needed = Channels::AMPLITUDE;
         needed.set(Channels::INTEGRATION_TIME, self.plan.time != plan::TimePlan::None);
-        needed.set(Channels::DISTANCE, self.plan.distance.is_some());
+        let by_distance = self.plan.distance.is_some() || self.plan.illumination.angle.is_some();
+        needed.set(Channels::DISTANCE, by_distance);
         needed
             | self.plan.lineariser.as_ref().map_or(Channels::empty(), Lineariser::channels)
             | self.plan.sigma.map_or(Channels::empty(), |sigma| sigma.needed)
@@ -301,6 +335,9 @@ impl Standardizer {
         };
         let sigma = predictor.as_ref().and(out.sigma.as_mut());
         let mut sigma = sigma.map(|plane| plane.values_mut().chunks_mut(BLOCK));
+        let surfaces = denoised.map(|(distance_m, _)| distance_m).or(own_distance_m);
+        let illumination = Illumination::new(&self.plan.illumination, frame, surfaces, &mut out.incidence)?;
+        let varies = table.is_some() || illumination.is_needed();
         let mut gains = [1.0; BLOCK];
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
@@ -315,12 +352,13 @@ impl Standardizer {
                 gains[..count].copy_from_slice(values);
             }
             let distance_m = distances.map_or(&ONES[..count], |distances| &distances[start..start + count]);
+            if varies && let TimeGain::Uniform(gain) = gain {
+                gains[..count].fill(gain);
+            }
             if let Some(table) = table {
-                if let TimeGain::Uniform(gain) = gain {
-                    gains[..count].fill(gain);
-                }
                 table.scale(distance_m, &mut gains[..count]);
             }
+            illumination.scale(start, &mut gains[..count], flags);
             let block = Block { amplitude, distance_m, time_gain: &gains[..count] };
             kernel::pointwise(block, &law, self.plan.low_signal_below_dn, values, flags);
             if let (Some(predictor), Some(sigma)) = (&predictor, sigma.as_mut().and_then(Iterator::next)) {
@@ -335,11 +373,12 @@ fn count(out: &Standardized) -> FrameSummary {
     let flags = out.flags.values();
     let mut tally = [0; kernel::TALLIES.len()];
     flags.chunks(BLOCK).for_each(|block| kernel::tally(block, &mut tally));
-    let [invalid, distance_extrapolated, specular] = tally;
+    let [invalid, distance_extrapolated, specular, illumination_extrapolated] = tally;
     FrameSummary {
         valid: flags.len() - invalid,
         pixels: flags.len(),
         distance_extrapolated,
+        illumination_extrapolated,
         specular,
         ..FrameSummary::default()
     }

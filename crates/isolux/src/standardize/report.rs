@@ -2,10 +2,13 @@
 
 use std::fmt;
 
+use crate::plane::Shape;
+
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppliedStep {
-    /// Which effect it takes out: `time`, `denoise`, `distance` or `specular`; `sigma` predicts what is left.
+    /// Which effect it takes out: `time`, `denoise`, `distance`, `profile`, `angle` or `specular`; `sigma` predicts what
+    /// is left.
     pub effect: &'static str,
     /// Name of the term.
     pub term: &'static str,
@@ -40,6 +43,15 @@ pub enum Note {
     NothingToDenoise,
     /// The noise of the distance cannot be computed from that of the amplitude.
     FrequencyUnknown,
+    /// `best` goes without the profile, which holds for another image format.
+    ProfileFormat {
+        /// Shape of the recording's frames.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
+    /// The calibration knows no angle, so that Lambert's cosine stands in.
+    Lambert,
 }
 
 impl fmt::Display for Note {
@@ -62,6 +74,14 @@ impl fmt::Display for Note {
             ),
             Self::NothingToDenoise => f.write_str(
                 "no step scales by the distance: there is nothing to denoise, and this step is left out",
+            ),
+            Self::ProfileFormat { found, expected } => write!(
+                f,
+                "the frames are {found}, the calibration's `profile` is for {expected}: this step is left out"
+            ),
+            Self::Lambert => f.write_str(
+                "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets. `isolux \
+                 calibrate --target REC` measures it",
             ),
         }
     }
@@ -97,6 +117,22 @@ pub enum PlanError {
          --shot-noise-dn2-per-dn), or fit it with `isolux calibrate --exposure-sweep REC`, several frames at each time"
     )]
     NoiseUnknown,
+    /// The profile asked for is that of another image format.
+    #[error(
+        "`profile` was asked for, but it holds for images of {expected}, and the recording's are {found}"
+    )]
+    ProfileFormat {
+        /// Shape of the recording's frames.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
+    /// No rays, no angles.
+    #[error(
+        "`angle` was asked for, but the recording has no intrinsics: write {{\"intrinsics\": {{\"fx\": .., \"fy\": .., \
+         \"cx\": .., \"cy\": ..}}}} (pixels) into its recording.json"
+    )]
+    IntrinsicsMissing,
     /// The calibration's own values are impossible.
     #[error("calibration: {0}")]
     Calibration(#[from] crate::terms::ParameterError),

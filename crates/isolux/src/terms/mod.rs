@@ -1,22 +1,27 @@
 //! The correction terms, one file each: model, fit and parameters together. A term has one name, in code, in
 //! the calibration file and on the command line.
 
+pub mod angle;
 pub mod cubic;
 pub mod eq5;
 pub mod linear;
 pub mod lut;
 pub mod noise;
+pub mod profile;
 pub mod response;
 pub mod spline;
 pub mod square;
 
+pub(crate) mod basis;
 mod polynomial;
 mod table;
 
+pub use angle::Angle;
 pub use cubic::Cubic;
 pub use lut::Lut;
 pub use noise::{Noise, NoiseModel};
 pub use polynomial::DistanceGain;
+pub use profile::Profile;
 pub use response::Response;
 pub use spline::Spline;
 pub use table::DistanceTable;

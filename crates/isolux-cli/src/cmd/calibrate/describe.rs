@@ -5,6 +5,7 @@ use isolux::calibrate::FitReport;
 use isolux::terms::cubic::Scaling;
 use isolux::terms::{FitQuality, Lut, Response, Spline};
 
+use super::targets;
 use crate::console::table;
 
 /// The fit, for a person to judge.
@@ -31,9 +32,22 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
     if let Some(spline) = &calibration.terms.spline {
         text.push(format!("\nspline, law over distance: {}", quality(&spline.fit, "positions")));
         text.push(spline_table(spline));
-        text.push(spline_use_table(report));
+        if !report.spline_uses.is_empty() {
+            text.push(spline_use_table(report));
+        }
         let [min, max] = spline.valid_distance_m;
         text.push(format!("valid from {min:.3} to {max:.3} m; {}", harmonic(spline)));
+    }
+    if let Some(profile) = &calibration.terms.profile {
+        text.push(format!("\nprofile, over the image: {}", quality(&profile.fit, "windows")));
+        text.push(targets::profile(profile));
+    }
+    if let Some(angle) = &calibration.terms.angle {
+        text.push(format!("\nangle, over the angle of incidence: {}", quality(&angle.fit, "windows")));
+        text.push(targets::angle(angle));
+    }
+    if let Some(report) = &report.target {
+        text.push(targets::report(report));
     }
     if let Some(floor) = calibration.noise_floor {
         text.push(format!(

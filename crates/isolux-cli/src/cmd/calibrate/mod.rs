@@ -1,13 +1,16 @@
-//! `isolux calibrate`: sweeps in, `CAMERA.json` out.
+//! `isolux calibrate`: sweeps and targets in, `CAMERA.json` out.
 
 mod describe;
+mod targets;
 
 use std::path::{Path, PathBuf};
 
 use isolux::calibrate::{
-    self, CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureSweep, FitReport,
-    ReferenceDecays,
+    CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureFit, ExposureSweep, FitReport,
+    Measurements, ReferenceDecays, TargetSweep, TargetWindows,
 };
+use isolux::standardize::FrameLineariser;
+use isolux::terms::Response;
 use isolux::{Calibration, Channels, Frame, Reference};
 
 use crate::args::CalibrateArgs;
@@ -18,13 +21,17 @@ use crate::{frames, output};
 pub(crate) use describe::describe;
 
 pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
-    if args.exposure_sweep.is_empty() && args.distance_sweep.is_empty() {
+    let inputs = Inputs {
+        exposure_sweeps: &args.exposure_sweep,
+        distance_sweeps: &args.distance_sweep,
+        targets: &args.target,
+    };
+    if inputs.all().next().is_none() {
         return Err(Failure::usage(
-            "nothing to fit: give --exposure-sweep REC or --distance-sweep REC, or both",
+            "nothing to fit: give --exposure-sweep REC, --distance-sweep REC or --target REC, or several",
         ));
     }
-    let inputs = args.exposure_sweep.iter().chain(&args.distance_sweep);
-    output::keep_clear_of(&args.output, inputs.map(PathBuf::as_path))?;
+    output::keep_clear_of(&args.output, inputs.all())?;
     output::expect_calibration_or_nothing(&args.output)?;
     let settings = CalibrateSettings {
         reference: Reference {
@@ -36,8 +43,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         exclude_time_us: args.exclude_time_us.clone(),
         modulation_frequency_hz: None,
     };
-    let (calibration, report) =
-        fit(&settings, args.camera.clone(), &args.exposure_sweep, &args.distance_sweep)?;
+    let (calibration, report) = fit(&settings, args.camera.clone(), inputs)?;
     isolux_io::write_calibration(&calibration, &args.output)?;
     report.warnings.iter().for_each(console::warn);
     if args.json {
@@ -47,18 +53,52 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     console::print(format!("written: {}", args.output.display()))
 }
 
-/// Measures the sweeps and fits what they determine. They tell the modulation frequency, unless the settings do.
+/// Recordings, by what they are.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Inputs<'a> {
+    pub(crate) exposure_sweeps: &'a [PathBuf],
+    pub(crate) distance_sweeps: &'a [PathBuf],
+    pub(crate) targets: &'a [PathBuf],
+}
+
+impl<'a> Inputs<'a> {
+    fn all(self) -> impl Iterator<Item = &'a Path> {
+        let sweeps = self.exposure_sweeps.iter().chain(self.distance_sweeps);
+        sweeps.chain(self.targets).map(PathBuf::as_path)
+    }
+}
+
+/// Measures the recordings and fits what they determine. Distance sweeps, and targets where there are none, tell the
+/// modulation frequency, unless the settings do.
 pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
-    exposure_sweeps: &[PathBuf],
-    distance_sweeps: &[PathBuf],
+    inputs: Inputs<'_>,
 ) -> Outcome<(Calibration, FitReport)> {
+    let Inputs { exposure_sweeps, distance_sweeps, targets } = inputs;
+    let mut settings = settings.clone();
+    if settings.modulation_frequency_hz.is_none() {
+        let told_by = [distance_sweeps, targets, exposure_sweeps].into_iter().find(|paths| !paths.is_empty());
+        settings.modulation_frequency_hz = modulation_frequency_hz(told_by.unwrap_or_default())?;
+    }
     let mut cameras = Vec::new();
-    let curves = exposure_sweeps.iter().map(|path| exposure_curve(path, settings, &mut cameras));
-    let curves = curves.collect::<Outcome<Vec<_>>>()?;
-    let decays = distance_sweeps.iter().map(|path| reference_decays(path, settings, &mut cameras));
-    let decays = decays.collect::<Outcome<Vec<_>>>()?;
+    let curves = exposure_sweeps.iter().map(|path| exposure_curve(path, &settings, &mut cameras));
+    let exposure = ExposureFit::new(&settings, curves.collect::<Outcome<Vec<_>>>()?)
+        .inspect_err(|error| error.warnings().iter().for_each(console::warn))
+        .map_err(Failure::data)?;
+    let mut measured = Measurements::default();
+    for path in distance_sweeps {
+        let (delivered, linear) = reference_decays(path, &settings, exposure.response(), &mut cameras)?;
+        measured.distance_sweeps.push(delivered);
+        measured.linear_distance_sweeps.extend(linear);
+    }
+    if measured.linear_distance_sweeps.len() < measured.distance_sweeps.len() {
+        // Some linear and some compressed: one law cannot be both.
+        measured.linear_distance_sweeps.clear();
+    }
+    for path in targets {
+        measured.targets.push(target_windows(path, &settings, exposure.response(), &mut cameras)?);
+    }
     cameras.dedup();
     if camera.is_none() && cameras.len() > 1 {
         let names = cameras.join("`, `");
@@ -67,12 +107,7 @@ pub(crate) fn fit(
         ));
     }
     let camera = camera.or_else(|| cameras.into_iter().next());
-    let mut settings = settings.clone();
-    if settings.modulation_frequency_hz.is_none() {
-        let told_by = if distance_sweeps.is_empty() { exposure_sweeps } else { distance_sweeps };
-        settings.modulation_frequency_hz = modulation_frequency_hz(told_by)?;
-    }
-    calibrate::fit(&settings, camera, curves, decays).map_err(|error| {
+    exposure.and(&settings, camera, measured).map_err(|error| {
         error.warnings().iter().for_each(console::warn);
         match error {
             // Pooled from all distance sweeps, so the error knows none of them.
@@ -85,7 +120,7 @@ pub(crate) fn fit(
     })
 }
 
-/// The frequency that all these sweeps name; one that does not leaves it open.
+/// The frequency that all of these recordings name; one that does not leaves it open.
 fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     let mut frequencies = Vec::new();
     for path in paths {
@@ -94,7 +129,7 @@ fn modulation_frequency_hz(paths: &[PathBuf]) -> Outcome<Option<f64>> {
     frequencies.dedup();
     if frequencies.len() > 1 {
         console::warn(
-            "the sweeps name different modulation frequencies, or some of them none: the spline goes without the \
+            "the recordings name different modulation frequencies, or some of them none: the spline goes without the \
              harmonic, and the response repairs no distance",
         );
         return Ok(None);
@@ -115,14 +150,61 @@ fn exposure_curve(
     Ok(sweep.finish())
 }
 
+/// The decays as they were delivered, and linear where the response allows it.
 fn reference_decays(
     path: &Path,
     settings: &CalibrateSettings,
+    response: Option<&Response>,
     cameras: &mut Vec<String>,
-) -> Outcome<ReferenceDecays> {
-    let mut sweep = DistanceSweep::new(path.display().to_string(), settings);
-    measure(path, "distance sweep", Channels::empty(), cameras, |frame| sweep.push(frame))?;
+) -> Outcome<(ReferenceDecays, Option<ReferenceDecays>)> {
+    let mut delivered = DistanceSweep::new(path.display().to_string(), settings);
+    let mut linear = delivered.clone();
+    let lineariser = lineariser(path, response)?;
+    let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
+    let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
+    measure(path, "distance sweep", besides, cameras, |frame| {
+        delivered.push(frame)?;
+        match &mut lineariser {
+            Some((lineariser, scratch)) => linear.push(linearised(lineariser, frame, scratch)?),
+            None => Ok(()),
+        }
+    })?;
+    Ok((delivered.finish(), lineariser.map(|_| linear.finish())))
+}
+
+fn target_windows(
+    path: &Path,
+    settings: &CalibrateSettings,
+    response: Option<&Response>,
+    cameras: &mut Vec<String>,
+) -> Outcome<TargetWindows> {
+    let intrinsics = frames::stream(isolux_io::open(path)?.metadata()).intrinsics;
+    let mut sweep = TargetSweep::new(path.display().to_string(), settings, intrinsics);
+    let lineariser = lineariser(path, response)?;
+    let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
+    let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
+    measure(path, "target", Channels::TARGET | besides, cameras, |frame| match &mut lineariser {
+        Some((lineariser, scratch)) => sweep.push(linearised(lineariser, frame, scratch)?),
+        None => sweep.push(frame),
+    })?;
     Ok(sweep.finish())
+}
+
+/// What makes the frames of a recording linear, where response and recording allow it.
+fn lineariser(path: &Path, response: Option<&Response>) -> Outcome<Option<FrameLineariser>> {
+    let Some(response) = response else { return Ok(None) };
+    Ok(FrameLineariser::new(response, isolux_io::open(path)?.metadata().available))
+}
+
+/// A linear copy of `frame`, in memory that is kept from frame to frame.
+fn linearised<'a>(
+    lineariser: &mut FrameLineariser,
+    frame: &Frame,
+    scratch: &'a mut Option<Frame>,
+) -> Result<&'a Frame, CalibrateError> {
+    let copy = scratch.insert(frame.clone());
+    lineariser.linearise(copy)?;
+    Ok(copy)
 }
 
 fn measure(

@@ -30,8 +30,9 @@ const SIGMA: &str = "sigma";
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
 /// Amplitude, distance, integration times and flags of a frame; result, flags and the specular rule's scratch; up
-/// to four planes of the denoising rules; intensity and raw bins, linear amplitude and distance of the response.
-const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4 + 5 * 4 + 2 * 4;
+/// to four planes of the denoising rules; intensity and raw bins, linear amplitude and distance of the response; four of
+/// the angles.
+const SLOT_BYTES_PER_PIXEL: usize = 4 + 4 + 4 + 2 + 4 + 2 + 4 + 4 * 4 + 5 * 4 + 2 * 4 + 4 * 4;
 /// Intensity, result, and what denoising leaves of the distance's noise.
 const SIGMA_BYTES_PER_PIXEL: usize = 4 + 4 + 4;
 
@@ -54,6 +55,7 @@ pub(crate) struct Summary {
     pub(crate) time_refused: usize,
     pub(crate) time_extrapolated: usize,
     pub(crate) distance_extrapolated: usize,
+    pub(crate) illumination_extrapolated: usize,
     pub(crate) specular: usize,
     /// Frames in which the specular rule found no cutoff, or there was no such step.
     pub(crate) frames_without_cutoff: usize,
@@ -230,6 +232,7 @@ impl Summary {
         self.time_refused += frame.time_refused;
         self.time_extrapolated += frame.time_extrapolated;
         self.distance_extrapolated += frame.distance_extrapolated;
+        self.illumination_extrapolated += frame.illumination_extrapolated;
         self.specular += frame.specular;
         self.frames_without_cutoff += usize::from(frame.specular_cutoff.is_none());
     }
@@ -301,6 +304,10 @@ fn describe(summary: &Summary) -> String {
         (summary.time_refused, "refused: integration time above the calibrated range, or unknown"),
         (summary.time_extrapolated, "below the calibrated integration times, continued as 1/t (flagged)"),
         (summary.distance_extrapolated, "outside the calibrated distances, continued as d² (flagged)"),
+        (
+            summary.illumination_extrapolated,
+            "outside the profile's support or steeper than was seen (flagged)",
+        ),
         (summary.specular, "limited as specular (flagged)"),
     ];
     lines.extend(

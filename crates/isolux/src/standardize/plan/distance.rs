@@ -55,7 +55,7 @@ impl Planner<'_> {
             (Method::Best, Some(calibration)) if calibration.terms.spline.is_some() => DistanceStep::Spline,
             (Method::Best, Some(calibration)) if calibration.terms.cubic.is_some() => DistanceStep::Cubic,
             (Method::Best, Some(_)) => {
-                if self.available.contains(Channels::DISTANCE) {
+                if self.stream.channels.contains(Channels::DISTANCE) {
                     let instead = "`--distance square` uses d².";
                     self.notes.push(Note::TermMissing { term: "cubic", instead });
                 }

@@ -2,12 +2,13 @@
 
 mod denoise;
 mod distance;
+mod illumination;
 mod response;
 mod sigma;
 mod specular;
 mod time;
 
-use super::choice::{Choice, Method};
+use super::choice::{Choice, Method, Stream};
 use super::linearise::Lineariser;
 use super::report::{AppliedStep, Note, PlanError};
 use crate::calibration::Calibration;
@@ -17,6 +18,7 @@ use crate::specular::SpecularRule;
 use crate::terms::response::ScalarResponse;
 use crate::terms::{DistanceGain, DistanceTable, Lut};
 
+pub(in crate::standardize) use illumination::{AnglePlan, IlluminationPlan, ProfilePlan};
 pub(in crate::standardize) use sigma::SigmaPlan;
 
 /// The integration-time step, ready to apply.
@@ -40,6 +42,7 @@ pub(in crate::standardize) struct Plan {
     pub(in crate::standardize) distance: Option<DistanceGain>,
     /// A factor on that law, for laws that are no polynomial.
     pub(in crate::standardize) distance_table: Option<DistanceTable>,
+    pub(in crate::standardize) illumination: IlluminationPlan,
     pub(in crate::standardize) specular: Option<SpecularRule>,
     /// `None` predicts no standard deviation.
     pub(in crate::standardize) sigma: Option<SigmaPlan>,
@@ -56,19 +59,21 @@ impl Plan {
     pub(in crate::standardize) fn new(
         choice: &Choice,
         calibration: Option<&Calibration>,
-        available: Channels,
+        stream: Stream,
     ) -> Result<Self, PlanError> {
         if let Some(calibration) = calibration {
             calibration.check()?;
         }
-        let mut planner = Planner { choice, calibration, available, steps: Vec::new(), notes: Vec::new() };
+        let mut planner = Planner { choice, calibration, stream, steps: Vec::new(), notes: Vec::new() };
         let (time, lineariser) = planner.time()?;
         let (distance, distance_table) = planner.distance()?.unzip();
-        let textbook: Vec<&str> = planner.steps.iter().map(|step| step.term).collect();
+        let denoise = planner.denoise(distance.is_some());
+        let illumination = planner.illumination()?;
+        let physics = planner.steps.iter().filter(|step| step.effect != "denoise");
+        let textbook: Vec<&str> = physics.map(|step| step.term).collect();
         if calibration.is_none() && !textbook.is_empty() {
             planner.notes.insert(0, Note::Textbook { terms: textbook.join(", ") });
         }
-        let denoise = planner.denoise(distance.is_some());
         let specular = planner.specular();
         let sigma = planner.sigma(distance.is_some())?;
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);
@@ -78,6 +83,7 @@ impl Plan {
             denoise,
             distance,
             distance_table: distance_table.flatten(),
+            illumination,
             specular,
             sigma,
             low_signal_below_dn: choice.low_signal_below_dn.or(floor).unwrap_or(0.0),
@@ -90,7 +96,7 @@ impl Plan {
 struct Planner<'a> {
     choice: &'a Choice,
     calibration: Option<&'a Calibration>,
-    available: Channels,
+    stream: Stream,
     steps: Vec<AppliedStep>,
     notes: Vec<Note>,
 }
@@ -109,7 +115,7 @@ impl Planner<'_> {
         channel: &'static str,
         required: bool,
     ) -> Result<bool, PlanError> {
-        if self.available.contains(needed) {
+        if self.stream.channels.contains(needed) {
             return Ok(true);
         }
         if required {

@@ -17,7 +17,7 @@ impl Planner<'_> {
             Some(tier) => tier,
             None => self.best_tier(response).ok_or_else(|| self.missing("response", "--exposure-sweep"))?,
         };
-        if !self.available.contains(tier.channels()) {
+        if !self.stream.channels.contains(tier.channels()) {
             return Err(PlanError::ChannelMissing { term: tier.name(), channel: tier.name() });
         }
         let linear = TimePlan::Linear { reference_us };
@@ -67,7 +67,7 @@ impl Planner<'_> {
 
     /// The best tier that calibration and recording allow.
     fn best_tier(&self, response: &Response) -> Option<ResponseTier> {
-        response.tiers().find(|tier| self.available.contains(tier.channels()))
+        response.tiers().find(|tier| self.stream.channels.contains(tier.channels()))
     }
 
     /// True where the fill of each pixel is measured, which no table over time can know.

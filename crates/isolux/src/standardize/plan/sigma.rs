@@ -31,7 +31,7 @@ impl Planner<'_> {
             return if required { Err(PlanError::NoiseUnknown) } else { Ok(None) };
         };
         noise.check()?;
-        let by_intensity = noise.by_intensity.filter(|_| self.available.contains(Channels::INTENSITY));
+        let by_intensity = noise.by_intensity.filter(|_| self.stream.channels.contains(Channels::INTENSITY));
         let AmplitudeNoise { ambient_variance_dn2_per_us: ambient, .. } = noise.by_amplitude;
         let needed = match by_intensity {
             Some(_) => Channels::INTENSITY,

@@ -52,7 +52,7 @@ impl Planner<'_> {
             (Method::Best, Some(_)) if self.has_better_than_the_lut() => TimeStep::Response,
             (Method::Best, Some(calibration)) if calibration.terms.lut.is_some() => TimeStep::Lut,
             (Method::Best, Some(_)) => {
-                if self.available.contains(Channels::INTEGRATION_TIME) {
+                if self.stream.channels.contains(Channels::INTEGRATION_TIME) {
                     let instead = "`--time linear` uses t_ref/t.";
                     self.notes.push(Note::TermMissing { term: "lut", instead });
                 }

@@ -5,11 +5,11 @@
 //! wall, at one amplitude per time; the board's positions fill the pixels otherwise, so no position is corrected by
 //! it. Compressed positions are outliers to the majority of the times that see the same distance uncompressed.
 
-use super::basis::Basis;
 use super::rows::{Model, Rows, count_positions};
 use super::select::{best, reweighted};
 use super::{Harmonic, Spline};
 use crate::statistics::median;
+use crate::terms::basis::Basis;
 use crate::terms::cubic::{Decay, Scaling};
 use crate::terms::{FitQuality, root_mean_square};
 

@@ -5,7 +5,6 @@
 //! from it); the harmonic is the aliased third one of the modulation (`A (1 + h₃ cos 4φ)`), known once the
 //! modulation frequency is. Outside the fitted distances h goes on with the slope −2.
 
-mod basis;
 mod fit;
 mod rows;
 mod select;
@@ -18,10 +17,10 @@ use serde::{Deserialize, Serialize};
 
 pub use fit::{SplineError, SplineUse};
 
+use super::basis::Basis;
 use super::table::DistanceTable;
 use super::{DistanceGain, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require};
 use crate::phase::SPEED_OF_LIGHT_M_PER_S;
-use basis::Basis;
 
 /// Smooth law over distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,12 +67,13 @@ impl Harmonic {
     }
 
     /// `[cos 4φ, sin 4φ]`.
-    fn columns(modulation_frequency_hz: f64, distance_m: f64) -> [f64; 2] {
+    pub(crate) fn columns(modulation_frequency_hz: f64, distance_m: f64) -> [f64; 2] {
         let (sine, cosine) = Self::angle(modulation_frequency_hz, distance_m).sin_cos();
         [cosine, sine]
     }
 
-    fn at(&self, distance_m: f64) -> f64 {
+    /// Its part of ln h at a distance (m).
+    pub(crate) fn at(&self, distance_m: f64) -> f64 {
         let [cosine, sine] = Self::columns(self.modulation_frequency_hz, distance_m);
         self.cosine * cosine + self.sine * sine
     }

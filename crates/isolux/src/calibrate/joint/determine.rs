@@ -1,0 +1,340 @@
+//! What do the observations know of each factor?
+//!
+//! Three questions, each of the curve that the factor is (ln h at 33 distances, ln v in the cells of the image that
+//! were seen, s at every time, the effect of k at 60°), not of its coefficients:
+//! - Were all other factors known, what would its standard error be? Too large: it was not seen.
+//! - How much larger does the error get because the others are unknown too (the square root of the variance
+//!   inflation)? Too much: it is confounded with them, and small faults of the model would grow by as much.
+//! - How much do ln d and ln cosθ vary that the other factors cannot take up? Both are measured, with errors of a
+//!   few percent, and a slope over little else than those errors comes out too small.
+
+use std::fmt;
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::columns::{Columns, Row};
+use super::problem::Problem;
+use super::robust::{Robust, factorize};
+use crate::terms::profile::Places;
+
+/// A factor of the joint model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Factor {
+    /// s, over the integration times.
+    Time,
+    /// h, over the distance.
+    Distance,
+    /// v, over the image.
+    Profile,
+    /// k, the exponent of cosθ.
+    Angle,
+}
+
+/// What the observations know of one factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Which factor.
+    pub factor: Factor,
+    /// Predicted standard error of its curve in ln, root mean square over its support. For k, of its effect at 60°.
+    pub standard_error: f64,
+    /// That error over the one it would have were the other factors known: 1 or more. Its condition.
+    pub inflation: f64,
+    /// Standard deviation, within surfaces, of ln d or ln cosθ that no other factor can take up; `None` for time and
+    /// profile, whose abscissas have no errors.
+    pub free_spread: Option<f64>,
+    /// Why it is not given out; `None` where it is determined.
+    pub refusal: Option<Refusal>,
+}
+
+/// Why a factor is not determined.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// What it depends on hardly changes within any surface.
+    NotSeen {
+        /// Which factor.
+        factor: Factor,
+    },
+    /// It cannot be told from others.
+    Confounded {
+        /// Which factor.
+        factor: Factor,
+        /// With these.
+        with: Vec<Factor>,
+        /// By how much the others' being unknown multiplies its error.
+        inflation: f64,
+    },
+    /// The observations are too few or too noisy.
+    Uncertain {
+        /// Which factor.
+        factor: Factor,
+        /// Predicted standard error of its curve.
+        standard_error: f64,
+    },
+}
+
+impl Finding {
+    /// Largest standard error of a curve that is given out.
+    pub const LARGEST_ERROR: f64 = 0.05;
+    /// Largest inflation.
+    pub const LARGEST_INFLATION: f64 = 30.0;
+    /// Least free standard deviation of ln d: ten times the errors of usual distances.
+    pub const LEAST_SPREAD_LN_DISTANCE: f64 = 0.05;
+    /// Least free standard deviation of ln cosθ: twice the errors of normals by plane fits.
+    pub const LEAST_SPREAD_LN_COSINE: f64 = 0.03;
+}
+
+impl Factor {
+    const ALL: [Self; 4] = [Self::Time, Self::Distance, Self::Profile, Self::Angle];
+
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "integration time",
+            Self::Distance => "distance law",
+            Self::Profile => "illumination profile",
+            Self::Angle => "angle exponent",
+        }
+    }
+
+    fn least_spread(self) -> Option<f64> {
+        match self {
+            Self::Distance => Some(Finding::LEAST_SPREAD_LN_DISTANCE),
+            Self::Angle => Some(Finding::LEAST_SPREAD_LN_COSINE),
+            Self::Time | Self::Profile => None,
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotSeen { factor } => f.write_str(match factor {
+                Factor::Time => "integration time: no surface is seen at more than one",
+                Factor::Distance => {
+                    "distance law: no surface is seen at distances that are unlike enough; record one material from \
+                     near to far"
+                }
+                Factor::Profile => {
+                    "illumination profile: no surface is seen at unlike places of the image; let a target wander \
+                     through it"
+                }
+                Factor::Angle => {
+                    "angle exponent: no surface is seen at angles that are unlike enough; tilt the target by up to 60°"
+                }
+            }),
+            Self::Confounded { factor, with, inflation } => {
+                let others: Vec<&str> = with.iter().map(|other| other.name()).collect();
+                write!(
+                    f,
+                    "{}: cannot be told from the {} (its error grows {inflation:.0}-fold){}",
+                    factor.name(),
+                    others.join(" and the "),
+                    advice(*factor, with)
+                )
+            }
+            Self::Uncertain { factor, standard_error } => write!(
+                f,
+                "{}: its standard error of {:.1} % is above {:.0} %; record more frames, or brighter ones",
+                factor.name(),
+                100.0 * standard_error,
+                100.0 * Finding::LARGEST_ERROR
+            ),
+        }
+    }
+}
+
+fn advice(factor: Factor, with: &[Factor]) -> &'static str {
+    let among = |one: Factor| factor == one || with.contains(&one);
+    match (among(Factor::Profile), among(Factor::Angle), among(Factor::Distance), among(Factor::Time)) {
+        (true, true, false, _) => {
+            ": the target faced the camera in all frames, or was always tilted alike where it was seen; tilt it"
+        }
+        (true, _, true, _) => {
+            ": each place of the image saw one distance; move the target nearer and farther"
+        }
+        (_, true, true, _) => ": the target was tilted by its distance; vary the two apart",
+        (_, _, true, true) => {
+            ": each distance was recorded with its own integration time; vary the two apart"
+        }
+        _ => "",
+    }
+}
+
+/// The findings on every factor that was fitted, and the standard error of ln v in each cell that was seen.
+pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec<Option<f64>>) {
+    let columns = &problem.columns;
+    let seen = seen_cells(problem, &robust.weights);
+    let knowledge = Knowledge { columns, robust, system: system(columns, robust) };
+    let fitted: Vec<Factor> =
+        Factor::ALL.into_iter().filter(|&factor| !ranges(columns, factor).is_empty()).collect();
+    let findings = fitted.iter().map(|&factor| knowledge.finding(factor, &fitted, &seen)).collect();
+    let errors = knowledge.cell_errors(&seen);
+    (findings, errors)
+}
+
+fn system(columns: &Columns, robust: &Robust) -> DMatrix<f64> {
+    &robust.normal.gram + columns.prior() * (robust.sigma * robust.sigma)
+}
+
+/// Columns of a factor.
+fn ranges(columns: &Columns, factor: Factor) -> Vec<usize> {
+    let both = |a: &Range<usize>, b: &Range<usize>| a.clone().chain(b.clone()).collect();
+    match factor {
+        Factor::Time => columns.times.clone().collect(),
+        Factor::Distance => both(&columns.law, &columns.harmonic),
+        Factor::Profile => both(&columns.radial, &columns.tensor),
+        Factor::Angle => columns.angle.clone().collect(),
+    }
+}
+
+fn seen_cells(problem: &Problem, weights: &[f64]) -> Vec<bool> {
+    let mut seen = vec![false; Places::CELLS[0] * Places::CELLS[1]];
+    if let Some(places) = problem.columns.model.profile {
+        for (observation, _) in problem.observations.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
+            if let Some(cell) = places.cell(observation.place.map(f64::from)) {
+                seen[cell] = true;
+            }
+        }
+    }
+    seen
+}
+
+struct Knowledge<'a> {
+    columns: &'a Columns,
+    robust: &'a Robust,
+    /// `G + σ² P`.
+    system: DMatrix<f64>,
+}
+
+impl Knowledge<'_> {
+    fn finding(&self, factor: Factor, fitted: &[Factor], seen: &[bool]) -> Finding {
+        let others: Vec<Factor> = fitted.iter().copied().filter(|other| *other != factor).collect();
+        let error = |with: &[Factor]| self.error(factor, with, seen);
+        let alone = error(&[]);
+        let standard_error = error(&others);
+        let inflation = (standard_error / alone).max(1.0);
+        let free_spread = factor.least_spread().map(|_| self.free_spread(factor, &others));
+        let narrow = |spread: Option<f64>| {
+            factor.least_spread().zip(spread).is_some_and(|(least, spread)| spread < least)
+        };
+        let narrow_with =
+            |with: &[Factor]| narrow(factor.least_spread().map(|_| self.free_spread(factor, with)));
+        // NaN, where the arithmetic failed, is too large as well.
+        let too_large = |error: f64| error.is_nan() || error > Finding::LARGEST_ERROR;
+        let refusal = if too_large(alone) || narrow_with(&[]) {
+            Some(Refusal::NotSeen { factor })
+        } else if inflation > Finding::LARGEST_INFLATION || narrow(free_spread) {
+            let confounds = |other: &Factor| {
+                let pair = std::slice::from_ref(other);
+                error(pair) / alone > 0.5 * Finding::LARGEST_INFLATION || narrow_with(pair)
+            };
+            let guilty: Vec<Factor> = others.iter().copied().filter(confounds).collect();
+            let with = if guilty.is_empty() { others } else { guilty };
+            Some(Refusal::Confounded { factor, with, inflation })
+        } else if too_large(standard_error) {
+            Some(Refusal::Uncertain { factor, standard_error })
+        } else {
+            None
+        };
+        Finding { factor, standard_error, inflation, free_spread, refusal }
+    }
+
+    /// Root mean square standard error of the factor's curve when it and `with` are unknown.
+    fn error(&self, factor: Factor, with: &[Factor], seen: &[bool]) -> f64 {
+        let variances = self.variances(&self.functionals(factor, seen), factor, with);
+        let sum: f64 = variances.iter().sum();
+        (sum / variances.len().max(1) as f64).sqrt()
+    }
+
+    /// Variances of linear functions of the factor's coefficients.
+    fn variances(&self, functionals: &[DVector<f64>], factor: Factor, with: &[Factor]) -> Vec<f64> {
+        let mut used = ranges(self.columns, factor);
+        used.extend(with.iter().flat_map(|&other| ranges(self.columns, other)));
+        used.sort_unstable();
+        let part = DMatrix::from_fn(used.len(), used.len(), |i, j| self.system[(used[i], used[j])]);
+        let Some(factorized) = part.cholesky() else { return vec![f64::INFINITY] };
+        let variance = |functional: &DVector<f64>| {
+            let wanted = DVector::from_fn(used.len(), |i, _| functional[used[i]]);
+            self.robust.sigma.powi(2) * wanted.dot(&factorized.solve(&wanted))
+        };
+        functionals.iter().map(variance).collect()
+    }
+
+    /// The points of the factor's curve, less that of the gauge.
+    fn functionals(&self, factor: Factor, seen: &[bool]) -> Vec<DVector<f64>> {
+        let columns = self.columns;
+        let model = &columns.model;
+        let difference = |row: &Row, gauge: &Row| dense(columns.len, row) - dense(columns.len, gauge);
+        match factor {
+            Factor::Time => {
+                let reference = model.time.map_or(0, |time| time.reference);
+                let unit = |j: usize| DVector::from_fn(columns.len, |i, _| f64::from(u8::from(i == j)));
+                let times = columns.times.clone().filter(|&j| j != reference);
+                times.map(|j| unit(j) - unit(reference)).collect()
+            }
+            Factor::Distance => {
+                const STEPS: u32 = 32;
+                let (Some(([start, end], _)), Some(law)) = (columns.distance, model.distance) else {
+                    return Vec::new();
+                };
+                let gauge = columns.at_distance(law.reference_m);
+                let distances = (0..=STEPS).map(|i| start + (end - start) * f64::from(i) / f64::from(STEPS));
+                distances.map(|ln_d| difference(&columns.at_distance(ln_d.exp()), &gauge)).collect()
+            }
+            Factor::Profile => {
+                let Some(places) = model.profile else { return Vec::new() };
+                let gauge = columns.at_place([0.0; 2]);
+                let cells = (0..seen.len()).filter(|&cell| seen[cell]);
+                cells.map(|cell| difference(&columns.at_place(places.cell_centre(cell)), &gauge)).collect()
+            }
+            Factor::Angle => {
+                let effect = |i: usize| if columns.angle.contains(&i) { 0.5f64.ln() } else { 0.0 };
+                vec![DVector::from_fn(columns.len, |i, _| effect(i))]
+            }
+        }
+    }
+
+    /// Standard deviation, within surfaces, of ln d or ln cosθ beside what `others` can take up.
+    fn free_spread(&self, factor: Factor, others: &[Factor]) -> f64 {
+        let columns = self.columns;
+        let mut direction = DVector::zeros(columns.len);
+        match (factor, columns.distance) {
+            (Factor::Distance, Some((_, basis))) => {
+                direction.rows_mut(columns.law.start, columns.law.len()).copy_from(&basis.line());
+            }
+            _ => columns.angle.clone().for_each(|column| direction[column] = 1.0),
+        }
+        let gram = &self.robust.normal.gram;
+        let product = gram * &direction;
+        let mut variance = direction.dot(&product);
+        let used: Vec<usize> = others.iter().flat_map(|&other| ranges(columns, other)).collect();
+        let part = DMatrix::from_fn(used.len(), used.len(), |i, j| self.system[(used[i], used[j])]);
+        let shared = DVector::from_fn(used.len(), |i, _| product[used[i]]);
+        if let Some(factorized) = part.cholesky() {
+            variance -= shared.dot(&factorized.solve(&shared));
+        }
+        (variance.max(0.0) / self.robust.normal.total).sqrt()
+    }
+
+    /// Standard error of ln v in each cell that was seen, all factors unknown.
+    fn cell_errors(&self, seen: &[bool]) -> Vec<Option<f64>> {
+        let functionals = self.functionals(Factor::Profile, seen);
+        let Some(factor) = factorize(&self.robust.normal.gram, &self.columns.prior(), self.robust.sigma)
+        else {
+            return vec![None; seen.len()];
+        };
+        let mut errors = functionals
+            .iter()
+            .map(|functional| self.robust.sigma * functional.dot(&factor.solve(functional)).sqrt());
+        seen.iter().map(|&seen| if seen { errors.next() } else { None }).collect()
+    }
+}
+
+fn dense(len: usize, row: &Row) -> DVector<f64> {
+    let mut dense = DVector::zeros(len);
+    row.entries().for_each(|(column, value)| dense[column] += value);
+    dense
+}

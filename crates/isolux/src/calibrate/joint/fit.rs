@@ -1,0 +1,192 @@
+//! What the solved problem says, in gauge.
+
+use super::determine::{Factor, Finding, Refusal, findings};
+use super::problem::Problem;
+use super::robust::Robust;
+use super::{AngleModel, JointModel, LAW_CURVATURE};
+use crate::terms::basis::Basis;
+use crate::terms::profile::{Places, Surface};
+use crate::terms::spline::Harmonic;
+
+/// The fitted factors. Each is `None` where it was not asked for or is refused.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointFit {
+    /// What was fitted.
+    pub model: JointModel,
+    /// s of every integration time, 0 at the reference.
+    pub ln_time: Option<Vec<f64>>,
+    /// The law over distance.
+    pub distance: Option<LawFit>,
+    /// The illumination profile.
+    pub profile: Option<ProfileFit>,
+    /// k, where it was fitted.
+    pub angle_exponent: Option<f64>,
+    /// What the observations know of each fitted factor, and which are refused.
+    pub findings: Vec<Finding>,
+    /// Unknowns beside the surfaces' levels.
+    pub unknowns: usize,
+    /// Rank of the reduced normal matrix, columns of unit length, eigenvalues above 1e-9 of the largest. Constants,
+    /// which the levels take up, and r² and r⁴, which the tensor nearly holds, are expected to be missing.
+    pub rank: usize,
+    /// Surfaces with two observations or more.
+    pub surfaces: usize,
+    /// Robust standard deviation of an observation of weight 1, in ln.
+    pub sigma: f64,
+    /// Residual of each observation as it was given, in ln; NaN where it took no part.
+    pub residuals: Vec<f64>,
+    /// Its robust weight, 0 to 1 times its own.
+    pub weights: Vec<f64>,
+}
+
+/// A fitted law over distance: `ln h = −2 ln(d/d_ref) + Σ c_k B_k(ln d) + harmonic`, slope −2 outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawFit {
+    /// Distance at which h = 1, m.
+    pub reference_m: f64,
+    /// Distances between which it was observed, m.
+    pub valid_distance_m: [f64; 2],
+    /// Coefficients of the cubic B-splines on equal intervals of ln d between them, in gauge.
+    pub coefficients: Vec<f64>,
+    /// The aliased harmonic, where the frequency was given.
+    pub harmonic: Option<Harmonic>,
+    /// Weight of the curvature against the mean squared residual, as [`crate::terms::Spline`] tells it.
+    pub curvature_weight: f64,
+}
+
+/// A fitted illumination profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileFit {
+    /// The image coordinates that it is a function of.
+    pub places: Places,
+    /// Coefficients of r² and r⁴.
+    pub radial: [f64; 2],
+    /// Coefficients of the tensor, those of one row of the image after the other, in gauge: ln v is 0 at the origin.
+    pub tensor: Vec<f64>,
+    /// Standard error of ln v in each of the [`Places::CELLS`]; `None` where nothing was seen.
+    pub cell_errors: Vec<Option<f64>>,
+}
+
+impl LawFit {
+    /// ln h at a distance (m): 0 at the reference distance.
+    #[must_use]
+    pub fn ln_response(&self, distance_m: f64) -> f64 {
+        let [min_m, max_m] = self.valid_distance_m;
+        let intervals = self.coefficients.len().saturating_sub(3).max(1);
+        let basis = Basis::new(min_m.ln(), max_m.ln(), intervals);
+        let inside_m = distance_m.max(min_m).min(max_m);
+        let harmonic = self.harmonic.map_or(0.0, |harmonic| harmonic.at(inside_m));
+        basis.sum(&self.coefficients, inside_m.ln()) + harmonic - 2.0 * (distance_m / self.reference_m).ln()
+    }
+}
+
+impl ProfileFit {
+    /// ln v at a place: 0 at the origin.
+    #[must_use]
+    pub fn ln_gain(&self, place: [f64; 2]) -> f64 {
+        Surface::new(&self.places).sum(&self.radial, &self.tensor, place)
+    }
+}
+
+impl JointFit {
+    /// Why the factor is not given out, where it was fitted and is not.
+    #[must_use]
+    pub fn refusal(&self, factor: Factor) -> Option<&Refusal> {
+        self.findings.iter().find(|finding| finding.factor == factor).and_then(|f| f.refusal.as_ref())
+    }
+
+    /// True when no fitted factor is refused.
+    #[must_use]
+    pub fn is_determined(&self) -> bool {
+        self.findings.iter().all(|finding| finding.refusal.is_none())
+    }
+}
+
+pub(super) fn conclude(problem: &Problem, robust: Robust) -> JointFit {
+    let (findings, cell_errors) = findings(problem, &robust);
+    let model = problem.columns.model;
+    let given =
+        |factor: Factor| findings.iter().any(|finding| finding.factor == factor && finding.refusal.is_none());
+    let (residuals, weights) = scattered(problem, &robust);
+    JointFit {
+        ln_time: given(Factor::Time).then(|| ln_time(problem, &robust)),
+        distance: given(Factor::Distance).then(|| law(problem, &robust)).flatten(),
+        profile: given(Factor::Profile).then(|| profile(problem, &robust, cell_errors)).flatten(),
+        angle_exponent: given(Factor::Angle)
+            .then(|| robust.coefficients[problem.columns.angle.start])
+            .filter(|_| model.angle == AngleModel::Free),
+        model,
+        unknowns: problem.columns.len,
+        rank: rank(&robust),
+        surfaces: problem.surfaces(),
+        sigma: robust.sigma,
+        residuals,
+        weights,
+        findings,
+    }
+}
+
+fn ln_time(problem: &Problem, robust: &Robust) -> Vec<f64> {
+    let times = &robust.coefficients.as_slice()[problem.columns.times.clone()];
+    let reference = problem.columns.model.time.map_or(0, |time| time.reference);
+    times.iter().map(|s| s - times[reference]).collect()
+}
+
+fn law(problem: &Problem, robust: &Robust) -> Option<LawFit> {
+    let columns = &problem.columns;
+    let (ends, _) = columns.distance?;
+    let law = columns.model.distance?;
+    let coefficients = robust.coefficients.as_slice();
+    // B-splines sum to 1, so a constant taken from all takes it from ln h.
+    let gauge = columns.at_distance(law.reference_m).dot(coefficients);
+    let harmonic = law.modulation_frequency_hz.map(|modulation_frequency_hz| Harmonic {
+        modulation_frequency_hz,
+        cosine: coefficients[columns.harmonic.start],
+        sine: coefficients[columns.harmonic.start + 1],
+    });
+    Some(LawFit {
+        reference_m: law.reference_m,
+        valid_distance_m: ends.map(f64::exp),
+        coefficients: coefficients[columns.law.clone()].iter().map(|c| c - gauge).collect(),
+        harmonic,
+        curvature_weight: columns.model.smoothness * (robust.sigma / LAW_CURVATURE).powi(2)
+            / robust.normal.total,
+    })
+}
+
+fn profile(problem: &Problem, robust: &Robust, cell_errors: Vec<Option<f64>>) -> Option<ProfileFit> {
+    let columns = &problem.columns;
+    columns.surface?;
+    let coefficients = robust.coefficients.as_slice();
+    let gauge = columns.at_place([0.0; 2]).dot(coefficients);
+    Some(ProfileFit {
+        places: columns.model.profile?,
+        radial: [coefficients[columns.radial.start], coefficients[columns.radial.start + 1]],
+        tensor: coefficients[columns.tensor.clone()].iter().map(|c| c - gauge).collect(),
+        cell_errors,
+    })
+}
+
+fn rank(robust: &Robust) -> usize {
+    const LEAST: f64 = 1e-9;
+    let gram = &robust.normal.gram;
+    // No column is larger than about 1; what its elimination leaves of one that is constant is rounding.
+    let rounding = 1e-10 * robust.normal.total;
+    let length = |i: usize| Some(gram[(i, i)]).filter(|square| *square > rounding).map_or(0.0, f64::sqrt);
+    let unit = nalgebra::DMatrix::from_fn(gram.nrows(), gram.ncols(), |i, j| {
+        let lengths = length(i) * length(j);
+        if lengths > 0.0 { gram[(i, j)] / lengths } else { 0.0 }
+    });
+    let eigenvalues = unit.symmetric_eigenvalues();
+    let largest = eigenvalues.max();
+    eigenvalues.iter().filter(|value| **value > LEAST * largest).count()
+}
+
+/// Residuals and weights in the caller's order.
+fn scattered(problem: &Problem, robust: &Robust) -> (Vec<f64>, Vec<f64>) {
+    let (mut residuals, mut weights) = (vec![f64::NAN; problem.given], vec![0.0; problem.given]);
+    for ((&number, residual), weight) in problem.numbers.iter().zip(&robust.residuals).zip(&robust.weights) {
+        residuals[number as usize] = *residual;
+        weights[number as usize] = *weight;
+    }
+    (residuals, weights)
+}

@@ -1,0 +1,172 @@
+//! Windows of all recordings as observations of the joint model.
+
+use super::TargetWindows;
+use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation, TimeModel};
+use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
+use crate::calibration::Calibration;
+use crate::terms::lut::LutAnswer;
+use crate::terms::profile::Places;
+use crate::terms::{Lut, Spline};
+
+/// Windows as observations.
+pub(super) struct Rows {
+    pub(super) observations: Vec<Observation>,
+    /// Frame of each, counted through all recordings.
+    pub(super) frames: Vec<u32>,
+    pub(super) model: JointModel,
+    /// Recording (by number) and label of each surface.
+    pub(super) surfaces: Vec<(usize, u8)>,
+    pub(super) reference_m: f64,
+    pub(super) times_us: Vec<f32>,
+}
+
+impl Rows {
+    pub(super) fn new(
+        settings: &CalibrateSettings,
+        targets: &[TargetWindows],
+        calibration: &Calibration,
+        warnings: &mut Vec<FitWarning>,
+    ) -> Result<Self, CalibrateError> {
+        let places = places(targets)?;
+        warn(targets, warnings);
+        let known = Known { lut: calibration.terms.lut.as_ref(), spline: calibration.terms.spline.as_ref() };
+        let times_us = if known.lut.is_some() { Vec::new() } else { times(targets) };
+        let mut rows = Self {
+            observations: Vec::new(),
+            frames: Vec::new(),
+            model: model(settings, targets, &known, &times_us, places),
+            surfaces: Vec::new(),
+            reference_m: settings.reference.distance_m,
+            times_us,
+        };
+        let mut first_frame = 0;
+        for (number, target) in targets.iter().enumerate() {
+            for window in &target.windows {
+                let Some(correction) = known.correction(window.time_us, window.distance_m) else { continue };
+                let time = rows.times_us.iter().position(|time| *time == window.time_us).unwrap_or(0);
+                let surface = rows.surface(number, window.label);
+                let [row, column] = window.pixel.map(f64::from);
+                rows.observations.push(Observation {
+                    surface,
+                    time: u16::try_from(time).unwrap_or(u16::MAX),
+                    ln_amplitude: (f64::from(window.ln_amplitude) + correction) as f32,
+                    distance_m: window.distance_m,
+                    place: places.at(row, column).map(|value| value as f32),
+                    cosine: window.cosine,
+                    weight: window.weight,
+                });
+                rows.frames.push(first_frame + window.frame);
+            }
+            first_frame += u32::try_from(target.frames).unwrap_or(u32::MAX);
+        }
+        Ok(rows)
+    }
+
+    fn surface(&mut self, recording: usize, label: u8) -> u32 {
+        let known = self.surfaces.iter().position(|surface| *surface == (recording, label));
+        let number = known.unwrap_or_else(|| {
+            self.surfaces.push((recording, label));
+            self.surfaces.len() - 1
+        });
+        u32::try_from(number).unwrap_or(u32::MAX)
+    }
+
+    /// Takes the weight from the surfaces that are marked.
+    pub(super) fn leave_out(&mut self, marked: &[bool]) {
+        for observation in &mut self.observations {
+            if marked.get(observation.surface as usize).copied().unwrap_or(false) {
+                observation.weight = 0.0;
+            }
+        }
+    }
+}
+
+/// Terms that sweeps have fitted already.
+struct Known<'a> {
+    lut: Option<&'a Lut>,
+    spline: Option<&'a Spline>,
+}
+
+impl Known<'_> {
+    /// What takes the known terms out of ln A; `None` where a term does not reach.
+    fn correction(&self, time_us: f32, distance_m: f32) -> Option<f64> {
+        let time = match self.lut.filter(|_| !time_us.is_nan()).map(|lut| lut.at(f64::from(time_us))) {
+            None => 0.0,
+            Some(LutAnswer::Inside(multiplier) | LutAnswer::Below(multiplier)) => multiplier.ln(),
+            Some(LutAnswer::Refused) => return None,
+        };
+        let law = self.spline.map_or(0.0, |spline| spline.ln_response(f64::from(distance_m)));
+        Some(time - law)
+    }
+}
+
+fn model(
+    settings: &CalibrateSettings,
+    targets: &[TargetWindows],
+    known: &Known<'_>,
+    times_us: &[f32],
+    places: Places,
+) -> JointModel {
+    let windows = || targets.iter().flat_map(|target| &target.windows);
+    let has_distance = windows().any(|window| window.distance_m > 0.0);
+    let has_angle = windows().any(|window| window.cosine > 0.0);
+    let reference_us = settings.reference.integration_time_us.unwrap_or(f64::NAN);
+    let nearest = |a: &usize, b: &usize| {
+        let away = |index: usize| (f64::from(times_us[index]) / reference_us).ln().abs();
+        away(*a).total_cmp(&away(*b))
+    };
+    let reference = (0..times_us.len()).min_by(nearest).unwrap_or(0);
+    JointModel {
+        time: (times_us.len() > 1).then_some(TimeModel { count: times_us.len(), reference }),
+        distance: (has_distance && known.spline.is_none()).then_some(DistanceModel {
+            reference_m: settings.reference.distance_m,
+            modulation_frequency_hz: settings.modulation_frequency_hz,
+        }),
+        profile: Some(places),
+        angle: if has_angle { AngleModel::Free } else { AngleModel::Absent },
+        smoothness: 1.0,
+    }
+}
+
+/// The times of all windows, µs, increasing; empty where one of them is unknown: then a recording's time is taken to
+/// be constant, and its materials' brightnesses hold it.
+fn times(targets: &[TargetWindows]) -> Vec<f32> {
+    let mut times: Vec<f32> =
+        targets.iter().flat_map(|target| &target.windows).map(|window| window.time_us).collect();
+    if times.iter().any(|time| time.is_nan()) {
+        return Vec::new();
+    }
+    times.sort_by(f32::total_cmp);
+    times.dedup();
+    times
+}
+
+/// Image coordinates that all recordings share.
+fn places(targets: &[TargetWindows]) -> Result<Places, CalibrateError> {
+    let used = || targets.iter().filter(|target| !target.is_empty());
+    let Some(first) = used().next().and_then(|target| target.shape.map(|shape| (target, shape))) else {
+        return Err(CalibrateError::Target(JointError::TooFew { found: 0, expected: 2 }));
+    };
+    let (first, shape) = first;
+    if let Some(other) = used().find(|target| target.shape != Some(shape)) {
+        let found = other.shape.map_or_else(|| "no frames".to_owned(), |shape| shape.to_string());
+        let expected = format!("{shape}, as in {}", first.recording);
+        return Err(CalibrateError::TargetShape { recording: other.recording.clone(), found, expected });
+    }
+    let intrinsics = used().find_map(|target| target.intrinsics);
+    Ok(Places::new(shape, intrinsics.as_ref()))
+}
+
+fn warn(targets: &[TargetWindows], warnings: &mut Vec<FitWarning>) {
+    for target in targets {
+        let recording = || target.recording.clone();
+        if target.is_empty() {
+            warnings.push(FitWarning::NoWindows { recording: recording() });
+        } else if target.intrinsics.is_none() {
+            warnings.push(FitWarning::NoIntrinsics { recording: recording() });
+        } else if target.without_normal * 2 > target.len() {
+            let (windows, of) = (target.without_normal, target.len());
+            warnings.push(FitWarning::FewNormals { recording: recording(), windows, of });
+        }
+    }
+}
