@@ -41,14 +41,14 @@ pub(crate) fn plan(model: &CameraModel, scene: &Scene) -> Result<Plan, CameraErr
     let mut clock = Clock::default();
     for (index, run) in scene.runs.iter().enumerate() {
         let times = integration_times_us(model, run, index)?;
-        for setting in settings(scene, run) {
+        for (number, setting) in settings(scene, run).into_iter().enumerate() {
             let longest_us =
                 if run.skip_over_saturated { longest_time_us(model, scene, &setting) } else { f64::INFINITY };
             let pose = plan.settings.len();
             plan.settings.push(setting);
+            let (times, count) = exposures(run, &times, number);
             for &time_us in times.iter().filter(|&&time_us| time_us <= longest_us) {
                 clock.change_to(time_us, u64::from(run.skip_frames));
-                let count = run.frames_per_time as usize;
                 if plan.frames.len() + count > FRAME_LIMIT {
                     return Err(CameraError::TooManyFrames {
                         scene: scene.name.clone(),
@@ -117,6 +117,16 @@ fn integration_times_us(model: &CameraModel, run: &Run, index: usize) -> Result<
     })
 }
 
+/// The integration times at which pose `number` of a run is recorded, and the frames of each.
+fn exposures<'a>(run: &Run, times: &'a [f64], number: usize) -> (&'a [f64], usize) {
+    let count = run.frames_per_time as usize;
+    if run.motion.is_none() || times.is_empty() {
+        return (times, count);
+    }
+    let turn = number / count.max(1) % times.len();
+    (&times[turn..=turn], 1)
+}
+
 /// The settings that a run goes through.
 fn settings(scene: &Scene, run: &Run) -> Vec<Setting> {
     let place = |name: &str| scene.objects.iter().position(|object| object.name == name);
@@ -127,15 +137,25 @@ fn settings(scene: &Scene, run: &Run) -> Vec<Setting> {
         settings.extend(approach.distances_m.iter().map(|&z| {
             let pose = scene.objects[index].pose();
             let [x, y, _] = pose.center_m;
-            Setting { moved: Some((index, Pose { center_m: [x, y, z], ..pose })), ..Setting::default() }
+            Setting { moved: vec![(index, Pose { center_m: [x, y, z], ..pose })], ..Setting::default() }
         }));
     }
     settings.extend(run.moves.iter().map(|step| match place(&step.object) {
         Some(index) => {
             let pose = step.apply(scene.objects[index].pose());
-            Setting { moved: Some((index, pose)), ..Setting::default() }
+            Setting { moved: vec![(index, pose)], ..Setting::default() }
         }
-        None => Setting { camera: step.apply(Pose::default()), moved: None },
+        None => Setting { camera: step.apply(Pose::default()), ..Setting::default() },
+    }));
+    settings.extend(run.motion.iter().flat_map(|motion| motion.poses()).map(|poses| {
+        let mut setting = Setting::default();
+        for (object, pose) in poses {
+            match place(object) {
+                Some(index) => setting.moved.push((index, pose)),
+                None => setting.camera = pose,
+            }
+        }
+        setting
     }));
     if settings.is_empty() {
         settings.push(Setting::default());
@@ -154,7 +174,9 @@ fn frame_count(model: &CameraModel, scene: &Scene) -> usize {
     let runs = scene.runs.iter().enumerate();
     runs.map(|(index, run)| {
         let times = integration_times_us(model, run, index).map_or(0, |times| times.len());
-        times.saturating_mul(run.frames_per_time as usize).saturating_mul(settings(scene, run).len())
+        let poses = settings(scene, run).len();
+        let frames = times.saturating_mul(run.frames_per_time as usize).saturating_mul(poses);
+        if run.motion.is_some() { poses } else { frames }
     })
     .fold(0, usize::saturating_add)
 }

@@ -33,11 +33,11 @@ pub(crate) struct View {
     pub(crate) world_from_camera: [[f64; 4]; 4],
 }
 
-/// What differs from pose to pose: the camera's pose, and the object that was put elsewhere.
+/// What differs from pose to pose: the camera's pose, and the objects that were put elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Setting {
     pub(crate) camera: Pose,
-    pub(crate) moved: Option<(usize, Pose)>,
+    pub(crate) moved: Vec<(usize, Pose)>,
 }
 
 /// Rays from the camera into the scene in one setting.
@@ -65,8 +65,8 @@ struct Seen<'a> {
 impl<'a> Tracer<'a> {
     pub(crate) fn new(model: &'a CameraModel, scene: &'a Scene, setting: &Setting) -> Self {
         let bodies = scene.objects.iter().enumerate().map(|(index, object)| {
-            let moved = setting.moved.filter(|(moved, _)| *moved == index);
-            let frame = moved.map_or_else(|| object.pose(), |(_, pose)| pose).frame();
+            let moved = setting.moved.iter().find(|(moved, _)| *moved == index);
+            let frame = moved.map_or_else(|| object.pose(), |(_, pose)| *pose).frame();
             Body { object, frame, bounding_radius_m: object.form.bounding_radius_m() }
         });
         Self { model, ambient: scene.ambient, camera: setting.camera.frame(), bodies: bodies.collect() }

@@ -43,6 +43,7 @@ fn the_example_shows_every_field() {
         "registers",
         "skip_over_saturated",
         "approach",
+        "motion",
         "camera",
         "sphere",
         "cylinder",

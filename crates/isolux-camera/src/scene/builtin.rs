@@ -26,6 +26,8 @@ const SCENES: Catalogue = Catalogue {
         "office-shelf",
         "cups",
         "two-boards",
+        "hand-held",
+        "hand-held-smoke",
         "example",
     ],
 };

@@ -1,6 +1,7 @@
 //! What stands before the camera, and what is recorded of it.
 
 pub mod builtin;
+pub mod motion;
 pub mod object;
 pub mod pose;
 pub mod run;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{InvalidValue, ensure};
+use crate::scene::motion::Motion;
 use crate::scene::pose::Pose;
 
 /// Frames of every integration time in every pose: the poses one after the other, in each of them the
@@ -25,6 +26,9 @@ pub struct Run {
     /// Poses that the run goes through, after those of `approach`; without either, everything stays in place.
     #[serde(rename = "pose")]
     pub moves: Vec<Move>,
+    /// Camera and objects on the move, instead of poses in which everything stands still.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
     /// Leave out what is over-saturated: an integration time is recorded only in poses where no bin of the
     /// 20×20 pixels at the image's centre is expected to reach the hard clip.
     pub skip_over_saturated: bool,
@@ -40,6 +44,7 @@ impl Default for Run {
             skip_frames: 0,
             approach: None,
             moves: Vec::new(),
+            motion: None,
             skip_over_saturated: false,
         }
     }
@@ -128,7 +133,15 @@ impl Run {
             ensure(right, || format!("{path}.object"), &pose.object, &known)?;
             pose.apply(Pose::default()).validate(&path)?;
         }
-        Ok(())
+        let Some(motion) = &self.motion else { return Ok(()) };
+        let alone = self.approach.is_none() && self.moves.is_empty();
+        ensure(
+            alone,
+            || format!("{path}.motion"),
+            "beside other poses",
+            "`motion`, or `approach` and `pose`",
+        )?;
+        motion.validate(&format!("{path}.motion"), objects)
     }
 
     fn validate_times(&self, path: &str) -> Result<(), InvalidValue> {

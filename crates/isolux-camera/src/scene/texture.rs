@@ -40,6 +40,15 @@ pub enum Texture {
         /// Reflectivity around the patches.
         border: f64,
     },
+    /// Square tiles, each of a reflectivity of its own, as unforeseeable as those of ordinary things.
+    Mosaic {
+        /// Side of a tile, metres.
+        cell_m: f64,
+        /// Lowest and highest reflectivity.
+        reflectivities: [f64; 2],
+        /// Chooses the tiles: another seed, another mosaic.
+        seed: u32,
+    },
     /// Letters and drawings: `#` has the second reflectivity, everything else the first; centred.
     Bitmap {
         /// Side of a character's cell, metres.
@@ -84,6 +93,10 @@ impl Texture {
                     Some((_, reflectivity)) => Surface { reflectivity, target: 0 },
                     None => Surface { reflectivity: *border, target: 0 },
                 }
+            }
+            Self::Mosaic { cell_m, reflectivities: [low, high], seed } => {
+                let tile = [x, y].map(|coordinate| (coordinate / cell_m).floor() as i32);
+                of(low + (high - low) * tile_share(*seed, tile))
             }
             Self::Bitmap { cell_m, rows, reflectivities } => {
                 let columns = rows.first().map_or(0, String::len);
@@ -131,6 +144,12 @@ impl Texture {
                 let count = reflectivities.len();
                 ensure((1..=room).contains(&count), || field("reflectivities"), count, &expected)
             }
+            Self::Mosaic { cell_m, reflectivities, .. } => {
+                length("mosaic.cell_m", *cell_m)?;
+                reflectivity("mosaic.reflectivities", reflectivities)?;
+                let field = || format!("{path}.mosaic.reflectivities");
+                ensure(reflectivities[0] <= reflectivities[1], field, reflectivities, "the lower one first")
+            }
             Self::Bitmap { cell_m, rows, reflectivities } => {
                 length("bitmap.cell_m", *cell_m)?;
                 reflectivity("bitmap.reflectivities", reflectivities)?;
@@ -141,6 +160,17 @@ impl Texture {
             }
         }
     }
+}
+
+/// A number from 0 to 1, below 1, that looks random: the mixer of MurmurHash3 (Appleby 2011) over seed and tile.
+fn tile_share(seed: u32, [column, row]: [i32; 2]) -> f64 {
+    let mixed = [column as u32, row as u32].iter().fold(seed, |bits, &part| {
+        let mut bits = (bits ^ part).wrapping_add(0x9e37_79b9);
+        bits = (bits ^ (bits >> 16)).wrapping_mul(0x85eb_ca6b);
+        bits = (bits ^ (bits >> 13)).wrapping_mul(0xc2b2_ae35);
+        bits ^ (bits >> 16)
+    });
+    f64::from(mixed) / 4_294_967_296.0
 }
 
 /// Which of `count` cells, centred about 0, the coordinate lies in; `None` outside or between them.
@@ -182,6 +212,12 @@ mod tests {
         let stripes = Texture::Stripes { period_m: 0.2, reflectivities: [0.1, 0.9] };
         assert_eq!(stripes.at([0.05, 3.0], 0).reflectivity, 0.1);
         assert_eq!(stripes.at([-0.05, 3.0], 0).reflectivity, 0.9);
+        let mosaic = Texture::Mosaic { cell_m: 0.1, reflectivities: [0.2, 0.8], seed: 3 };
+        let tiles = (0..900).map(|i| mosaic.at([0.1 * f64::from(i % 30) - 1.45, 0.1 * f64::from(i / 30)], 0));
+        let tiles: Vec<f64> = tiles.map(|surface| surface.reflectivity).collect();
+        assert!(tiles.iter().all(|tile| (0.2..0.8).contains(tile)));
+        // Uniform: the mean of 900 has a standard error of 0.6/√(12·900) = 0.006.
+        assert!((tiles.iter().sum::<f64>() / 900.0 - 0.5).abs() < 0.03);
         let rows = vec!["#.".to_owned(), "..".to_owned()];
         let letters = Texture::Bitmap { cell_m: 0.1, rows, reflectivities: [0.2, 0.8] };
         assert_eq!(letters.at([-0.05, -0.05], 0).reflectivity, 0.8);

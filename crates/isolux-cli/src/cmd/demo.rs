@@ -155,7 +155,7 @@ impl Demo {
             calibrate::Inputs {
                 exposure_sweeps: &[self.recording(EXPOSURE_SWEEP)],
                 distance_sweeps: &[self.recording(DISTANCE_SWEEP)],
-                targets: &[],
+                ..calibrate::Inputs::default()
             },
         )?;
         isolux_io::write_calibration(&calibration, &self.folder.join("CAMERA.json"))?;

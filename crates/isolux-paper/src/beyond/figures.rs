@@ -7,6 +7,7 @@ use super::chains::{self, Chain};
 use super::denoise::{self, Bars};
 use super::figure::{Aim, Figure, Unit};
 use super::held_out::{CAMERAS, HeldOut};
+use super::self_calibration::{self, Deviation, Experiment, Poses, RunKind, SelfCalibration, Spoil};
 use super::sigma::{self, SigmaCase};
 use super::{decay, still, targets};
 use crate::error::PaperError;
@@ -31,6 +32,8 @@ pub fn simulated(progress: &mut dyn FnMut(&str)) -> Result<Vec<Figure>, PaperErr
     figures.extend(sigma(&cameras)?);
     progress("brackets");
     figures.extend(brackets(&cameras)?);
+    progress("self-calibration");
+    figures.extend(self_calibration(&cameras)?);
     Ok(figures)
 }
 
@@ -178,6 +181,32 @@ fn brackets(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
     let filled = -largest(saturated.map(|bracket| -bracket.filled_share));
     let what = "pixels saturated at the longest time that the others fill, cups, lowest";
     figures.push(Figure::new("bracket", what, filled, Unit::Percent, Aim::AtLeast(0.9)));
+    Ok(figures)
+}
+
+/// The worst of the cameras, each carried through a room of unknown things.
+fn self_calibration(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
+    let mut figures = Vec::new();
+    for (poses, words) in [(Poses::Recorded, "poses recorded"), (Poses::Missing, "motion estimated")] {
+        let run = |camera: &HeldOut| {
+            let scene = RunKind::HandHeld.scene(40)?;
+            let (camera, spoil) = (camera.model.clone(), Some(Spoil::USUAL));
+            self_calibration::measure(&Experiment { camera, scene, poses, spoil, seed: 1 })
+        };
+        let found = cameras.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        let mut figure = |subject, bound, of: fn(&SelfCalibration) -> Option<Deviation>| {
+            let worst = largest(found.iter().map(|found| of(found).map_or(f64::NAN, |d| d.largest)));
+            let what = format!(
+                "self-calibration, 40 hand-held frames, 2 % noise, 5 % outliers, {words}: largest deviation, worst camera"
+            );
+            // The bounds are those for known poses; without, the figure is what it is.
+            let aim = if poses == Poses::Recorded { Aim::AtMost(bound) } else { Aim::None };
+            figures.push(Figure::new(subject, what, worst, Unit::Percent, aim));
+        };
+        figure("spline", 0.01, |found| found.distance);
+        figure("profile", 0.015, |found| found.profile);
+        figure("lut", 0.01, |found| found.time);
+    }
     Ok(figures)
 }
 

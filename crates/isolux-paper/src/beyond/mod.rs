@@ -11,6 +11,7 @@ pub mod figures;
 pub mod held_out;
 mod noise_free;
 pub mod response;
+pub mod self_calibration;
 pub mod sigma;
 pub mod still;
 pub mod targets;

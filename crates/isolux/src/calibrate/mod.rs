@@ -3,10 +3,12 @@
 mod distance_sweep;
 mod evidence;
 mod exposure_sweep;
+mod factors;
 pub mod joint;
 mod noise_survey;
 mod response;
 mod runs;
+pub mod scene;
 mod target;
 mod warning;
 mod window;
@@ -15,6 +17,7 @@ pub use distance_sweep::{DistanceSweep, ReferenceDecays};
 pub use evidence::ResponseEvidence;
 pub use exposure_sweep::{ExposureCurve, ExposureSweep};
 pub use noise_survey::{NoiseCells, NoiseSurvey};
+pub use scene::{CameraMotion, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep};
 pub use target::{SurfaceUse, TargetReport, TargetSweep, TargetWindows, label_windows};
 pub use warning::FitWarning;
 
@@ -87,6 +90,21 @@ pub enum CalibrateError {
         /// Frame number, from 0.
         frame: usize,
     },
+    /// A frame without a pose where poses are said to be recorded.
+    #[error("frame {frame}: no pose (`world_from_camera`) found, one for every frame expected")]
+    NoPose {
+        /// Frame number, from 0.
+        frame: usize,
+    },
+    /// A pose that is not rigid.
+    #[error(
+        "frame {frame}: `world_from_camera` is no rigid transform: a rotation (orthonormal, no mirror), a translation \
+         in metres and a last row of 0 0 0 1 expected"
+    )]
+    NotRigid {
+        /// Frame number, from 0.
+        frame: usize,
+    },
     /// A frame whose planes do not fit together.
     #[error("frame {frame}: {source}")]
     Shape {
@@ -115,6 +133,21 @@ pub enum CalibrateError {
         /// That of the first.
         expected: String,
     },
+    /// A camera that moves, without intrinsics.
+    #[error(
+        "no intrinsics {{fx, fy, cx, cy}} in recording.json, expected: a camera that moves sees its surfaces through them"
+    )]
+    NoIntrinsics,
+    /// Scenes of unlike formats.
+    #[error("scene {recording}: images of {found} found, {expected} expected: one camera, one format")]
+    SceneShape {
+        /// The recording.
+        recording: String,
+        /// Its shape.
+        found: String,
+        /// That of the first.
+        expected: String,
+    },
     /// The joint model could not be fitted.
     #[error("targets: {0}")]
     Target(joint::JointError),
@@ -122,7 +155,9 @@ pub enum CalibrateError {
     #[error("linear amplitude: {0}")]
     Linear(#[from] StandardizeError),
     /// No sweep given.
-    #[error("no recording given: calibrate needs at least one exposure sweep, distance sweep or target")]
+    #[error(
+        "no recording given: calibrate needs at least one exposure sweep, distance sweep, target or scene"
+    )]
     NothingToFit,
     /// The table could not be fitted.
     #[error("exposure sweep {recording}: {source}")]
@@ -166,6 +201,8 @@ pub struct FitReport {
     pub spline_uses: Vec<SplineUse>,
     /// What the fit of targets found.
     pub target: Option<TargetReport>,
+    /// What the fit of scenes found.
+    pub scene: Option<SceneReport>,
     /// Everything that the user should know or record better, also in the calibration's terms.
     pub warnings: Vec<FitWarning>,
 }
@@ -180,6 +217,8 @@ pub struct Measurements {
     pub linear_distance_sweeps: Vec<ReferenceDecays>,
     /// Labelled targets in any pose, linear where the response allows it.
     pub targets: Vec<TargetWindows>,
+    /// Ordinary recordings.
+    pub scenes: Vec<SceneObservations>,
 }
 
 /// What exposure sweeps determine: the first stage of a calibration, since whatever is fitted after it needs the
@@ -249,8 +288,9 @@ impl ExposureFit {
     ) -> Result<(Calibration, FitReport), CalibrateError> {
         let Self { mut calibration, curves, warnings } = self;
         calibration.camera = camera;
-        let Measurements { distance_sweeps, linear_distance_sweeps, targets } = measured;
-        if curves.is_empty() && distance_sweeps.is_empty() && targets.is_empty() {
+        let Measurements { distance_sweeps, linear_distance_sweeps, targets, scenes } = measured;
+        let sweeps = curves.len() + distance_sweeps.len();
+        if sweeps + targets.len() + scenes.len() == 0 {
             return Err(CalibrateError::NothingToFit);
         }
         let mut report = FitReport {
@@ -258,6 +298,7 @@ impl ExposureFit {
             decays: Vec::new(),
             spline_uses: Vec::new(),
             target: None,
+            scene: None,
             warnings,
         };
         if !distance_sweeps.is_empty() {
@@ -266,6 +307,9 @@ impl ExposureFit {
         if !targets.is_empty() {
             let found = target::fit(settings, &targets, &mut calibration, &mut report.warnings)?;
             report.target = Some(found);
+        }
+        if !scenes.is_empty() {
+            report.scene = Some(scene::fit(settings, &scenes, &mut calibration, &mut report.warnings)?);
         }
         Ok((calibration, report))
     }

@@ -2,8 +2,10 @@
 
 use std::fmt;
 
-use super::joint::Refusal;
+use super::joint::{JointError, Refusal};
+use super::scene::MotionRefusal;
 use crate::terms::cubic::{Decay, DecayUse, Scaling};
+use crate::terms::lut::LutError;
 use crate::terms::response::ResponseError;
 use crate::terms::spline::{SplineError, SplineUse};
 
@@ -181,6 +183,8 @@ pub enum FitWarning {
     },
     /// A factor that the targets do not determine.
     FactorRefused {
+        /// What was observed: `targets` or `scenes`.
+        of: &'static str,
         /// Why.
         reason: Refusal,
         /// Unknowns of the model beside the materials' brightnesses.
@@ -192,10 +196,41 @@ pub enum FitWarning {
     LambertAssumed,
     /// A distance law that was seen, but not at the reference distance.
     ReferenceNotSeen {
+        /// What was observed: `targets` or `scenes`.
+        of: &'static str,
         /// Reference, m.
         reference_m: f64,
         /// Distances that were seen, m.
         seen_m: [f64; 2],
+    },
+    /// A scene whose motion could not be told.
+    MotionRefused {
+        /// The recording.
+        recording: String,
+        /// Why.
+        reason: MotionRefusal,
+    },
+    /// A scene without two looks at anything.
+    SceneUseless {
+        /// The recording.
+        recording: String,
+    },
+    /// Scenes from which nothing could be fitted.
+    NothingFromScenes {
+        /// Why.
+        reason: JointError,
+    },
+    /// A scene in which neither camera nor integration time changes.
+    NothingVaries,
+    /// Integration times that scenes give no table of.
+    NoTable {
+        /// Why.
+        reason: LutError,
+    },
+    /// A term that scenes determine, but something better is there.
+    TermKept {
+        /// The term.
+        term: &'static str,
     },
 }
 
@@ -315,18 +350,33 @@ impl fmt::Display for FitWarning {
                 "{recording}: label {label} left out, its amplitude goes with cos^{exponent:.1}θ: a glossy material has its \
                  own angle law"
             ),
-            Self::FactorRefused { reason, unknowns, rank } => {
-                write!(f, "targets: no {reason} (rank {rank} of {unknowns} unknowns)")
+            Self::FactorRefused { of, reason, unknowns, rank } => {
+                write!(f, "{of}: no {reason} (rank {rank} of {unknowns} unknowns)")
             }
             Self::LambertAssumed => f.write_str(
                 "targets: the other factors are fitted with Lambert's cosine, which was not measured: a glossy target \
                  bends them",
             ),
-            Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
+            Self::ReferenceNotSeen { of, reference_m, seen_m: [min_m, max_m] } => write!(
                 f,
-                "targets: no spline, the targets were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance \
+                "{of}: no spline, the {of} were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance \
                  of {reference_m} m: record there, or choose another with --reference-distance-m"
             ),
+            Self::MotionRefused { recording, reason } => write!(f, "{recording}: left out, {reason}"),
+            Self::SceneUseless { recording } => write!(
+                f,
+                "{recording}: left out, no surface was found in two frames: too dim, too textured, too few frames, or \
+                 everything moved"
+            ),
+            Self::NothingFromScenes { reason } => write!(f, "scenes: no term, {reason}"),
+            Self::NothingVaries => f.write_str(
+                "scenes: no term, neither the camera nor the integration time changes: whatever the amplitudes are, it may \
+                 be the surfaces' reflectivity",
+            ),
+            Self::NoTable { reason } => write!(f, "scenes: no lut, {reason}"),
+            Self::TermKept { term } => {
+                write!(f, "scenes: `{term}` is that of the sweeps or targets, which know more; the scenes' is dropped")
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use isolux::calibrate::FitReport;
 use isolux::terms::cubic::Scaling;
 use isolux::terms::{FitQuality, Lut, Response, Spline};
 
-use super::targets;
+use super::{scenes, targets};
 use crate::console::table;
 
 /// The fit, for a person to judge.
@@ -15,7 +15,8 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         text.push(format!("\nlut, multiplier over integration time: {}", quality(&lut.fit, "times")));
         text.push(lut_table(lut));
         let [min, max] = lut.valid_integration_time_us;
-        text.push(format!("valid from {min} to {max} µs (peak of the mean amplitude)"));
+        let end = if report.exposure_curves.is_empty() { "" } else { " (peak of the mean amplitude)" };
+        text.push(format!("valid from {min} to {max} µs{end}"));
     }
     if let Some(response) = &calibration.terms.response {
         text.push("\nresponse, compression by the fill of each pixel, by tier of evidence:".to_owned());
@@ -30,7 +31,8 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         text.push(format!("valid from {min:.3} to {max:.3} m"));
     }
     if let Some(spline) = &calibration.terms.spline {
-        text.push(format!("\nspline, law over distance: {}", quality(&spline.fit, "positions")));
+        let points = if report.spline_uses.is_empty() { "observations" } else { "positions" };
+        text.push(format!("\nspline, law over distance: {}", quality(&spline.fit, points)));
         text.push(spline_table(spline));
         if !report.spline_uses.is_empty() {
             text.push(spline_use_table(report));
@@ -39,15 +41,18 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         text.push(format!("valid from {min:.3} to {max:.3} m; {}", harmonic(spline)));
     }
     if let Some(profile) = &calibration.terms.profile {
-        text.push(format!("\nprofile, over the image: {}", quality(&profile.fit, "windows")));
+        text.push(format!("\nprofile, over the image: {}", quality(&profile.fit, "observations")));
         text.push(targets::profile(profile));
     }
     if let Some(angle) = &calibration.terms.angle {
-        text.push(format!("\nangle, over the angle of incidence: {}", quality(&angle.fit, "windows")));
+        text.push(format!("\nangle, over the angle of incidence: {}", quality(&angle.fit, "observations")));
         text.push(targets::angle(angle));
     }
     if let Some(report) = &report.target {
         text.push(targets::report(report));
+    }
+    if let Some(report) = &report.scene {
+        text.push(scenes::report(report));
     }
     if let Some(floor) = calibration.noise_floor {
         text.push(format!(

@@ -1,6 +1,8 @@
-//! `isolux calibrate`: sweeps and targets in, `CAMERA.json` out.
+//! `isolux calibrate`: sweeps, targets and scenes in, `CAMERA.json` out.
 
 mod describe;
+mod findings;
+mod scenes;
 mod targets;
 
 use std::path::{Path, PathBuf};
@@ -25,10 +27,11 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         exposure_sweeps: &args.exposure_sweep,
         distance_sweeps: &args.distance_sweep,
         targets: &args.target,
+        scenes: &args.scene,
     };
     if inputs.all().next().is_none() {
         return Err(Failure::usage(
-            "nothing to fit: give --exposure-sweep REC, --distance-sweep REC or --target REC, or several",
+            "nothing to fit: give --exposure-sweep REC, --distance-sweep REC, --target REC or --scene REC, or several",
         ));
     }
     output::keep_clear_of(&args.output, inputs.all())?;
@@ -59,26 +62,28 @@ pub(crate) struct Inputs<'a> {
     pub(crate) exposure_sweeps: &'a [PathBuf],
     pub(crate) distance_sweeps: &'a [PathBuf],
     pub(crate) targets: &'a [PathBuf],
+    pub(crate) scenes: &'a [PathBuf],
 }
 
 impl<'a> Inputs<'a> {
     fn all(self) -> impl Iterator<Item = &'a Path> {
         let sweeps = self.exposure_sweeps.iter().chain(self.distance_sweeps);
-        sweeps.chain(self.targets).map(PathBuf::as_path)
+        sweeps.chain(self.targets).chain(self.scenes).map(PathBuf::as_path)
     }
 }
 
-/// Measures the recordings and fits what they determine. Distance sweeps, and targets where there are none, tell the
-/// modulation frequency, unless the settings do.
+/// Measures the recordings and fits what they determine. Distance sweeps tell the modulation frequency, targets where
+/// there are none, scenes where there are neither, unless the settings do.
 pub(crate) fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
     inputs: Inputs<'_>,
 ) -> Outcome<(Calibration, FitReport)> {
-    let Inputs { exposure_sweeps, distance_sweeps, targets } = inputs;
+    let Inputs { exposure_sweeps, distance_sweeps, targets, scenes } = inputs;
     let mut settings = settings.clone();
     if settings.modulation_frequency_hz.is_none() {
-        let told_by = [distance_sweeps, targets, exposure_sweeps].into_iter().find(|paths| !paths.is_empty());
+        let kinds = [distance_sweeps, targets, scenes, exposure_sweeps];
+        let told_by = kinds.into_iter().find(|paths| !paths.is_empty());
         settings.modulation_frequency_hz = modulation_frequency_hz(told_by.unwrap_or_default())?;
     }
     let mut cameras = Vec::new();
@@ -98,6 +103,9 @@ pub(crate) fn fit(
     }
     for path in targets {
         measured.targets.push(target_windows(path, &settings, exposure.response(), &mut cameras)?);
+    }
+    for path in scenes {
+        measured.scenes.push(scenes::observations(path, &settings, exposure.response(), &mut cameras)?);
     }
     cameras.dedup();
     if camera.is_none() && cameras.len() > 1 {

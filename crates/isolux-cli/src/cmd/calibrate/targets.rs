@@ -1,9 +1,9 @@
 //! What the fit of targets found, in words and tables.
 
 use isolux::calibrate::TargetReport;
-use isolux::calibrate::joint::{Factor, Finding};
 use isolux::terms::{Angle, Profile};
 
+use super::findings::findings;
 use crate::console::table;
 
 /// The gain at nine places of the image, and the part of it that is supported.
@@ -51,9 +51,6 @@ pub(super) fn report(report: &TargetReport) -> String {
             if surface.left_out { "left out as glossy" } else { "fitted" }.to_owned(),
         ]
     }));
-    let heads = ["  factor", "standard error", "condition", "free spread", "verdict"];
-    let mut findings = vec![heads.map(str::to_owned).to_vec()];
-    findings.extend(report.findings.iter().map(finding));
     let lambert = if report.lambert_assumed { ", Lambert's cosine assumed" } else { "" };
     format!(
         "\ntargets, all factors together: residual σ {:.2} %, rank {} of {} unknowns{lambert}\n{}\n{}",
@@ -61,20 +58,6 @@ pub(super) fn report(report: &TargetReport) -> String {
         report.rank,
         report.unknowns,
         table(&rows),
-        table(&findings)
+        findings(&report.findings)
     )
-}
-
-fn finding(finding: &Finding) -> Vec<String> {
-    let spread = finding.free_spread.map(|spread| match finding.factor {
-        Factor::Distance => format!("{spread:.3} of ln d"),
-        _ => format!("{spread:.3} of ln cosθ"),
-    });
-    vec![
-        format!("  {}", finding.factor.name()),
-        format!("{:.2} %", 100.0 * finding.standard_error),
-        format!("{:.1}", finding.inflation),
-        spread.unwrap_or_else(|| "-".to_owned()),
-        if finding.refusal.is_some() { "refused" } else { "determined" }.to_owned(),
-    ]
 }

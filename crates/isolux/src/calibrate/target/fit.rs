@@ -7,13 +7,13 @@
 
 use super::report::TargetReport;
 use super::rows::Rows;
-use super::{TargetWindows, gloss, terms};
+use super::{TargetWindows, gloss};
+use crate::calibrate::factors::{FOLDS, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointFit, JointModel, Observation};
 use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
 use crate::calibration::Calibration;
+use crate::terms::Source;
 
-/// Parts that the frames are divided into for the held-out residual.
-const FOLDS: u32 = 5;
 /// Factors on the weight of smoothness that are tried.
 const SMOOTHNESS: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
 
@@ -38,10 +38,16 @@ pub(in crate::calibrate) fn fit(
         let mine = rows.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
         used.outliers = mine.filter(|(_, weight)| **weight == 0.0).count();
     }
-    let held_out = held_out(&rows, &fit.model);
-    let words = warnings[about_targets..].iter().map(ToString::to_string).collect();
-    let warning = terms::write(&rows, &fit, held_out, words, targets, calibration);
-    warnings.extend(warning);
+    let fitted = Fitted {
+        of: "targets",
+        observations: &rows.observations,
+        fit: &fit,
+        held_out_residual: held_out(&rows.observations, &rows.frames, &fit.model, 0..FOLDS),
+        reference_m: rows.reference_m,
+        fitted_on: targets.iter().map(source).collect(),
+        warnings: warnings[about_targets..].iter().map(ToString::to_string).collect(),
+    };
+    warnings.extend(fitted.write(calibration));
     Ok(TargetReport {
         surfaces,
         lambert_assumed: fit.model.angle == AngleModel::Fixed(crate::terms::angle::LAMBERT),
@@ -50,6 +56,14 @@ pub(in crate::calibrate) fn fit(
         sigma: fit.sigma,
         findings: fit.findings,
     })
+}
+
+fn source(target: &TargetWindows) -> Source {
+    Source {
+        recording: target.recording.clone(),
+        frames_used: target.frames_used,
+        frames_left_out: target.frames - target.frames_used,
+    }
 }
 
 /// The fit of the largest model whose factors are not confounded. Each refusal becomes a warning.
@@ -61,6 +75,7 @@ fn determined(
     let mut fit = joint::solve(observations, &model)?;
     if let Some(reason) = fit.refusal(Factor::Angle) {
         warnings.push(FitWarning::FactorRefused {
+            of: "targets",
             reason: reason.clone(),
             unknowns: fit.unknowns,
             rank: fit.rank,
@@ -72,7 +87,12 @@ fn determined(
     for factor in [Factor::Time, Factor::Distance, Factor::Profile] {
         if let Some(reason) = fit.refusal(factor) {
             let reason = reason.clone();
-            warnings.push(FitWarning::FactorRefused { reason, unknowns: fit.unknowns, rank: fit.rank });
+            warnings.push(FitWarning::FactorRefused {
+                of: "targets",
+                reason,
+                unknowns: fit.unknowns,
+                rank: fit.rank,
+            });
         }
     }
     Ok(fit)
@@ -83,37 +103,11 @@ fn determined(
 fn smoothness(rows: &Rows) -> f64 {
     let tried = SMOOTHNESS.map(|smoothness| {
         let model = JointModel { smoothness, ..rows.model };
-        (smoothness, held_out(rows, &model).unwrap_or(f64::INFINITY))
+        let held_out = held_out(&rows.observations, &rows.frames, &model, 0..FOLDS);
+        (smoothness, held_out.unwrap_or(f64::INFINITY))
     });
     tried
         .into_iter()
         .reduce(|best, next| if next.1 < best.1 { next } else { best })
         .map_or(1.0, |best| best.0)
-}
-
-/// Root mean square of the relative error on frames that were left out in turn; `None` with too few frames.
-fn held_out(rows: &Rows, model: &JointModel) -> Option<f64> {
-    let frames = rows.frames.iter().max().map_or(0, |last| last + 1);
-    if frames < FOLDS {
-        return None;
-    }
-    let mut squares = (0.0, 0.0);
-    for fold in 0..FOLDS {
-        let mut training = rows.observations.clone();
-        let tested =
-            |index: &usize| rows.frames[*index] % FOLDS == fold && rows.observations[*index].weight > 0.0;
-        let tested: Vec<usize> = (0..training.len()).filter(tested).collect();
-        tested.iter().for_each(|&index| training[index].weight = 0.0);
-        let Ok(fit) = joint::solve(&training, model) else { continue };
-        // Outliers of the whole are no test of the law: their share is told beside it.
-        let cutoff = crate::calibrate::joint::CUTOFF * fit.sigma;
-        let errors = tested.iter().map(|&index| {
-            let scale = f64::from(rows.observations[index].weight).sqrt();
-            (fit.residuals[index], fit.residuals[index].abs() * scale < cutoff)
-        });
-        for (error, _) in errors.filter(|(error, inside)| error.is_finite() && *inside) {
-            squares = (squares.0 + error.exp_m1().powi(2), squares.1 + 1.0);
-        }
-    }
-    (squares.1 > 0.0).then(|| (squares.0 / squares.1).sqrt())
 }

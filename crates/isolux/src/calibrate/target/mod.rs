@@ -6,7 +6,6 @@ mod gloss;
 mod patches;
 mod report;
 mod rows;
-mod terms;
 #[cfg(test)]
 mod tests;
 

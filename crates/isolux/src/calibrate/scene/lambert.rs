@@ -1,0 +1,70 @@
+//! What hangs on the angle's exponent where the observations do not tell it.
+//!
+//! The normals of a scene are measured, with errors. Where cosθ changes within surfaces by little more than these, the
+//! noise of the normals feigns an exponent, and with it a profile. So the exponent is held instead, at two values: a
+//! factor that differs between them is confounded with it.
+
+use super::rows::Rows;
+use crate::calibrate::joint::{self, AngleModel, Factor, Finding, JointError, JointFit, JointModel, Refusal};
+use crate::terms::angle::LAMBERT;
+use crate::terms::profile::Places;
+use crate::terms::root_mean_square;
+
+/// A factor that changes by more than this in ln (root mean square) when the exponent changes by 1 is not told.
+const LARGEST_CHANGE: f64 = 0.02;
+
+/// Fits the rows. Where the exponent is refused, it is held at Lambert's 1, and what hangs on it is refused too.
+pub(super) fn settle(rows: &Rows) -> Result<JointFit, JointError> {
+    let free = joint::solve(&rows.observations, &rows.model)?;
+    let Some(finding) = free.findings.iter().find(|finding| finding.factor == Factor::Angle) else {
+        return Ok(free);
+    };
+    if finding.refusal.is_none() {
+        return Ok(free);
+    }
+    let held = |exponent: f64| {
+        let model = JointModel { angle: AngleModel::Fixed(exponent), ..rows.model };
+        joint::solve(&rows.observations, &model)
+    };
+    let (mut fit, other) = (held(LAMBERT)?, held(LAMBERT - 1.0)?);
+    for (factor, change) in
+        [(Factor::Distance, law_change(&fit, &other)), (Factor::Profile, profile_change(&fit, &other))]
+    {
+        refuse(&mut fit.findings, factor, change);
+    }
+    let told = |factor| fit.refusal(factor).is_none();
+    let (law, profile) = (told(Factor::Distance), told(Factor::Profile));
+    fit.distance = fit.distance.filter(|_| law);
+    fit.profile = fit.profile.filter(|_| profile);
+    fit.findings.push(finding.clone());
+    Ok(fit)
+}
+
+fn refuse(findings: &mut [Finding], factor: Factor, change: Option<f64>) {
+    let Some(change) = change.filter(|change| *change > LARGEST_CHANGE) else { return };
+    for finding in findings.iter_mut().filter(|finding| finding.factor == factor && finding.refusal.is_none())
+    {
+        finding.inflation = finding.inflation.max(change / finding.standard_error);
+        let (with, inflation) = (vec![Factor::Angle], finding.inflation);
+        finding.refusal = Some(Refusal::Confounded { factor, with, inflation });
+    }
+}
+
+/// Change of ln h over the observed distances; `None` where it is refused anyway.
+fn law_change(fit: &JointFit, other: &JointFit) -> Option<f64> {
+    const STEPS: u32 = 32;
+    let (law, other) = (fit.distance.as_ref()?, other.distance.as_ref()?);
+    let [min_m, max_m] = law.valid_distance_m;
+    let distances = (0..=STEPS).map(|i| min_m * (max_m / min_m).powf(f64::from(i) / f64::from(STEPS)));
+    root_mean_square(distances.map(|d| law.ln_response(d) - other.ln_response(d)))
+}
+
+/// Change of ln v over the cells that were seen.
+fn profile_change(fit: &JointFit, other: &JointFit) -> Option<f64> {
+    let (profile, other) = (fit.profile.as_ref()?, other.profile.as_ref()?);
+    let cells = (0..Places::CELLS[0] * Places::CELLS[1]).filter(|&cell| profile.cell_errors[cell].is_some());
+    root_mean_square(cells.map(|cell| {
+        let place = profile.places.cell_centre(cell);
+        profile.ln_gain(place) - other.ln_gain(place)
+    }))
+}

@@ -1,0 +1,256 @@
+//! How the camera moved: as recorded, not at all, or as the surfaces tell.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::align::{Lost, align};
+use super::rigid::Rigid;
+use super::surfaces::Surfaces;
+use super::view::View;
+use crate::calibrate::CalibrateError;
+use crate::frame::Frame;
+
+/// Where the poses come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraMotion {
+    /// Every frame has its `world_from_camera`.
+    Recorded,
+    /// The camera stood still.
+    Still,
+    /// From the distances: the surfaces of each frame are aligned with those of the frames before.
+    Estimated,
+}
+
+/// What became of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MotionFinding {
+    /// Poses of the recording.
+    Recorded(Travel),
+    /// No motion.
+    Still,
+    /// Estimated.
+    Estimated {
+        /// How far.
+        travel: Travel,
+        /// Frames that could not be aligned and were left out.
+        frames_lost: usize,
+        /// Scatter of the surfaces about their places, in expected standard errors, median over the frames.
+        residual: f64,
+    },
+    /// Nothing that could be believed.
+    Refused(MotionRefusal),
+}
+
+/// How far a camera came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Travel {
+    /// Largest distance from its first place, m.
+    pub away_m: f64,
+    /// Largest turn from its first direction, degrees.
+    pub turned_deg: f64,
+}
+
+/// Why the motion could not be estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionRefusal {
+    /// Frames that could be aligned.
+    pub aligned: usize,
+    /// All frames.
+    pub frames: usize,
+    /// What stood against most of the others.
+    pub reason: MotionObstacle,
+}
+
+/// What stands against an alignment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MotionObstacle {
+    /// Too few surfaces of earlier frames were in sight.
+    TooFewSurfaces {
+        /// Number found.
+        found: usize,
+    },
+    /// The surfaces let the camera slide along them.
+    Slides {
+        /// Root mean square of the surfaces' resistance to the easiest motion; 1 where all face it.
+        hold: f64,
+    },
+    /// The surfaces do not fit any one motion.
+    Disagrees {
+        /// Scatter about their places, in expected standard errors.
+        residual: f64,
+        /// Share of the surfaces that agree, 0..=1.
+        agreeing: f64,
+    },
+}
+
+impl fmt::Display for MotionRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { aligned, frames, reason } = self;
+        write!(f, "the camera's motion cannot be estimated (only {aligned} of {frames} frames aligned): ")?;
+        match reason {
+            MotionObstacle::TooFewSurfaces { found } => {
+                write!(f, "{found} surfaces of earlier frames in sight; move more slowly, with more light")
+            }
+            MotionObstacle::Slides { hold } => write!(
+                f,
+                "the surfaces let the camera slide along them (hold {hold:.3}): a single plane or a ball; show a \
+                 corner of a room, or record the poses"
+            ),
+            MotionObstacle::Disagrees { residual, agreeing } => write!(
+                f,
+                "surfaces scatter by {residual:.1}σ about their places, {:.0} % agree; move more slowly, let nothing \
+                 else move, or record the poses",
+                100.0 * agreeing
+            ),
+        }
+    }
+}
+
+/// Share of the frames that may be lost.
+const LOST_SHARE: f64 = 0.5;
+
+/// Recorded poses that differ by less are those of a camera that stands still.
+const LEAST_TRAVEL_M: f64 = 1e-3;
+const LEAST_TURN_DEG: f64 = 0.05;
+
+/// The poses so far.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    motion: CameraMotion,
+    /// World from camera, by the number of the frame.
+    pub(super) poses: BTreeMap<u32, Rigid>,
+    /// The last two poses, the latest first: the next one is where they lead.
+    recent: Vec<Rigid>,
+    scales: Vec<f64>,
+    lost: Vec<Lost>,
+}
+
+impl Path {
+    pub(super) fn new(motion: CameraMotion) -> Self {
+        Self { motion, poses: BTreeMap::new(), recent: Vec::new(), scales: Vec::new(), lost: Vec::new() }
+    }
+
+    pub(super) fn is_still(&self) -> bool {
+        self.motion == CameraMotion::Still
+    }
+
+    /// The next frame's pose, world from camera; `None` where it cannot be told. Where nothing is known but a first
+    /// frame that nothing can be aligned with, `surfaces` are forgotten and the frame becomes the first.
+    pub(super) fn next(
+        &mut self,
+        number: usize,
+        frame: &Frame,
+        view: &View,
+        surfaces: &mut Surfaces,
+    ) -> Result<Option<Rigid>, CalibrateError> {
+        let pose = match self.motion {
+            CameraMotion::Still => Some(Rigid::identity()),
+            CameraMotion::Recorded => {
+                let rows = frame.world_from_camera.ok_or(CalibrateError::NoPose { frame: number })?;
+                Some(Rigid::from_rows(&rows).ok_or(CalibrateError::NotRigid { frame: number })?)
+            }
+            CameraMotion::Estimated => self.estimate(view, surfaces),
+        };
+        if let Some(pose) = pose {
+            self.poses.insert(number as u32, pose);
+        }
+        Ok(pose)
+    }
+
+    fn estimate(&mut self, view: &View, surfaces: &mut Surfaces) -> Option<Rigid> {
+        let Some(&last) = self.recent.first() else {
+            self.recent.push(Rigid::identity());
+            return Some(Rigid::identity());
+        };
+        let led = self.recent.get(1).map(|before| last.after(&before.inverse()).after(&last));
+        let guesses: Vec<Rigid> = [last].into_iter().chain(led).collect();
+        match align(surfaces, view, &guesses) {
+            Ok(aligned) => {
+                self.scales.push(aligned.scale);
+                self.recent.insert(0, aligned.world_from_camera);
+                self.recent.truncate(2);
+                Some(aligned.world_from_camera)
+            }
+            Err(lost) => {
+                self.lost.push(lost);
+                // A jump leads nowhere: the next frame starts from the last known place.
+                self.recent.truncate(1);
+                if self.poses.len() > 1 {
+                    return None;
+                }
+                *surfaces = Surfaces::default();
+                self.poses.clear();
+                Some(last)
+            }
+        }
+    }
+
+    pub(super) fn finding(&self) -> MotionFinding {
+        match self.motion {
+            CameraMotion::Recorded => {
+                let travel = self.travel();
+                let still = travel.away_m < LEAST_TRAVEL_M && travel.turned_deg < LEAST_TURN_DEG;
+                if still { MotionFinding::Still } else { MotionFinding::Recorded(travel) }
+            }
+            CameraMotion::Still => MotionFinding::Still,
+            CameraMotion::Estimated => {
+                let (aligned, lost) = (self.poses.len(), self.lost.len());
+                if lost as f64 > LOST_SHARE * (aligned + lost) as f64 {
+                    let reason = self.obstacle();
+                    return MotionFinding::Refused(MotionRefusal { aligned, frames: aligned + lost, reason });
+                }
+                let residual = crate::statistics::median(&mut self.scales.clone()).unwrap_or(0.0);
+                MotionFinding::Estimated { travel: self.travel(), frames_lost: lost, residual }
+            }
+        }
+    }
+
+    /// The obstacle met most often, at its median.
+    fn obstacle(&self) -> MotionObstacle {
+        let middle = |pick: &dyn Fn(&Lost) -> Option<f64>| {
+            let mut values: Vec<f64> = self.lost.iter().filter_map(pick).collect();
+            let count = values.len();
+            crate::statistics::median(&mut values).map(|value| (count, value))
+        };
+        let unknown = middle(&|lost| match lost {
+            Lost::Unknown { surfaces } => Some(*surfaces as f64),
+            _ => None,
+        });
+        let slides = middle(&|lost| match lost {
+            Lost::Slides { hold } => Some(*hold),
+            _ => None,
+        });
+        let disagrees = middle(&|lost| match lost {
+            Lost::Disagrees { scale, .. } => Some(*scale),
+            _ => None,
+        });
+        let agreeing = middle(&|lost| match lost {
+            Lost::Disagrees { agreeing, .. } => Some(*agreeing),
+            _ => None,
+        });
+        let count = |found: &Option<(usize, f64)>| found.map_or(0, |(count, _)| count);
+        match (slides, disagrees) {
+            (Some((most, hold)), _) if most >= count(&disagrees).max(count(&unknown)) => {
+                MotionObstacle::Slides { hold }
+            }
+            (_, Some((most, residual))) if most >= count(&unknown) => {
+                MotionObstacle::Disagrees { residual, agreeing: agreeing.map_or(0.0, |(_, share)| share) }
+            }
+            _ => MotionObstacle::TooFewSurfaces { found: unknown.map_or(0.0, |(_, found)| found) as usize },
+        }
+    }
+
+    fn travel(&self) -> Travel {
+        let Some(first) = self.poses.values().next().map(Rigid::inverse) else { return Travel::default() };
+        let mut travel = Travel::default();
+        for pose in self.poses.values() {
+            let motion = first.after(pose);
+            let cosine = (0.5 * (motion.rotation.trace() - 1.0)).clamp(-1.0, 1.0);
+            travel.away_m = travel.away_m.max(motion.translation.norm());
+            travel.turned_deg = travel.turned_deg.max(cosine.acos().to_degrees());
+        }
+        travel
+    }
+}
