@@ -288,6 +288,9 @@ pub(crate) struct PaperArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux figures\n  isolux figures --json")]
 pub(crate) struct FiguresArgs {
+    /// Folder with recordings of real cameras, by name: kinect2-checkerboard, ifm-o3d303
+    #[arg(long, value_name = "DIR")]
+    pub(crate) recordings: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,

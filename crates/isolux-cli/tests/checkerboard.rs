@@ -38,7 +38,7 @@ fn white_squares_are_one_material_over_distance_tilt_and_place() {
         );
     }
     let all = spreads.last().unwrap();
-    // What the issue asks for: half of what a cubic over distance leaves, without leaving windows out.
+    // The aim: half of what a cubic over distance leaves, without leaving windows out.
     assert!(all.deviation <= 0.085 && all.robust <= 0.055, "{all:?}");
     assert!(all.windows as f64 > 0.99 * all.of as f64 && all.of > 700, "{all:?}");
 }

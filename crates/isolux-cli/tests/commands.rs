@@ -78,6 +78,10 @@ fn the_examples_of_the_help_work() {
     // `demo` is shown by a test of its own; the example of `completions` writes into the user's folder.
     for command in ["info", "calibrate", "standardize", "evaluate", "simulate"] {
         let sandbox = recordings();
+        if command == "calibrate" {
+            sandbox.run("simulate patches-smoke -o tilted-board").done();
+            sandbox.run("simulate hand-held-smoke -o walk-through-the-lab").done();
+        }
         let help = sandbox.isolux(&[command, "--help"]).done().stdout;
         for example in examples(&help) {
             let mut shell = Command::new("sh");

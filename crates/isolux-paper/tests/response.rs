@@ -29,7 +29,7 @@ fn of<'a>(figures: &'a [ResponseFigure], methods: &'a [&str]) -> impl Iterator<I
     figures.iter().filter(move |figure| methods.contains(&figure.method))
 }
 
-/// The bound: at least three times lower than a table refitted on the same scene, on the same pixels. And the
+/// The aim: at least three times lower than a table refitted on the same scene, on the same pixels. And the
 /// bins and the DC image leave nothing but noise: 3 % of it, since the medians rest on 3000 pixels of 16 exposures
 /// (1/√(2·16·3000) = 0.3 % by themselves).
 #[test]

@@ -5,7 +5,7 @@
 use isolux_paper::beyond::targets::{calibrate_random, patches};
 
 /// Ten of the 135 frames (poses and times of all kinds) of a camera that nothing was tuned on; more cameras are in the
-/// figures. The issue asks for 1.5 times the floor; noise of ten frames moves the ratio by a percent.
+/// figures. The aim is 1.5 times the floor; noise of ten frames moves the ratio by a percent.
 #[test]
 fn patches_are_their_reflectivity_whatever_their_depth_tilt_and_place() {
     const SEED: u64 = 22;

@@ -11,7 +11,7 @@ use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 
 use super::findings::findings;
-use super::{linearised, lineariser};
+use super::{RESPONSE_CHANNELS, linearised, lineariser};
 use crate::console::table;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
@@ -26,7 +26,8 @@ pub(super) fn observations(
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
     let lineariser = lineariser(path, response)?;
-    let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
+    // Without a response, a still scene may tell it.
+    let besides = lineariser.as_ref().map_or(RESPONSE_CHANNELS, FrameLineariser::channels);
     let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::POSE;
     let mut scout = MotionScout::default();

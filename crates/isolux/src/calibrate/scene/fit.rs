@@ -1,4 +1,4 @@
-//! From observations to the terms `lut`, `spline`, `profile` and `angle`.
+//! From observations to the terms `lut`, `response`, `spline`, `profile` and `angle`.
 //!
 //! What sweeps and targets have fitted stays: they know their surfaces. Scenes fill in what is absent.
 
@@ -8,7 +8,7 @@ use super::rows::Rows;
 use super::{MotionFinding, SceneObservations};
 use crate::calibrate::factors::{Fitted, held_out};
 use crate::calibrate::joint::{Factor, JointError, JointFit, JointModel};
-use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
+use crate::calibrate::{CalibrateError, CalibrateSettings, ExposureCurve, FitWarning, response};
 use crate::calibration::{Calibration, REFERENCE_TIME_US};
 use crate::terms::lut::ExposureSample;
 use crate::terms::{FitQuality, Lut};
@@ -57,6 +57,7 @@ pub(in crate::calibrate) fn fit(
         warnings: warnings[about_scenes..].iter().map(ToString::to_string).collect(),
     };
     write(settings, &rows, &fitted, calibration, warnings);
+    fit_response(settings, scenes, calibration, warnings);
     Ok(SceneReport {
         scenes: scenes.iter().map(SceneUse::of).collect(),
         observations: fit.residuals.iter().filter(|residual| residual.is_finite()).count(),
@@ -84,6 +85,21 @@ fn solve(
     }
     let fit = lambert::settle(&rows);
     Ok((rows, fit))
+}
+
+/// The compression of the pixels, from still scenes at several times, where no sweep has told it.
+fn fit_response(
+    settings: &CalibrateSettings,
+    scenes: &[SceneObservations],
+    calibration: &mut Calibration,
+    warnings: &mut Vec<FitWarning>,
+) {
+    let several = |curve: &&ExposureCurve| curve.samples.len() > 1;
+    let curves: Vec<ExposureCurve> =
+        scenes.iter().filter_map(|scene| scene.exposure.as_ref()).filter(several).cloned().collect();
+    let Some(lut) = calibration.terms.lut.as_ref().filter(|_| !curves.is_empty()) else { return };
+    let found = response::fit_response(settings, &curves, lut, warnings);
+    Put { warnings }.at("response", &mut calibration.terms.response, found);
 }
 
 /// Share of the weighted observations that the fit has rejected.

@@ -30,7 +30,7 @@ pub(super) use fit::fit;
 use nalgebra::Vector3;
 
 use super::runs::{Place, Runs};
-use super::{CalibrateError, CalibrateSettings};
+use super::{CalibrateError, CalibrateSettings, ExposureCurve, ExposureSweep};
 use crate::frame::Frame;
 use crate::geometry::Intrinsics;
 use crate::plane::Shape;
@@ -51,6 +51,8 @@ pub struct SceneSweep {
     frames: usize,
     path: Path,
     surfaces: Surfaces,
+    /// A camera that stands still over several times shows each pixel's compression too.
+    exposure: Option<ExposureSweep>,
 }
 
 /// One amplitude of one surface, with all that it may depend on.
@@ -87,6 +89,8 @@ pub struct SceneObservations {
     pub motion: MotionFinding,
     /// Every observation of a surface that was seen more than once; none when the motion could not be told.
     pub observations: Vec<SceneObservation>,
+    /// The same recording as an exposure sweep, where the camera stood still.
+    pub exposure: Option<ExposureCurve>,
 }
 
 impl SceneSweep {
@@ -99,8 +103,12 @@ impl SceneSweep {
         intrinsics: Option<Intrinsics>,
         motion: CameraMotion,
     ) -> Self {
+        let recording = recording.into();
+        // Recorded poses may turn out to be one and the same.
+        let may_be_still = motion != CameraMotion::Estimated;
         Self {
-            recording: recording.into(),
+            exposure: may_be_still.then(|| ExposureSweep::new(&recording, settings)),
+            recording,
             settings: settings.clone(),
             intrinsics: intrinsics.filter(Intrinsics::is_usable),
             shape: None,
@@ -129,6 +137,11 @@ impl SceneSweep {
             return Err(CalibrateError::NoDistance { frame: number });
         }
         let time_us = super::single_time(&frame.integration_time_us).unwrap_or(f64::NAN);
+        match &mut self.exposure {
+            Some(exposure) if time_us.is_finite() => exposure.push(frame)?,
+            // Times that nobody knows tell nothing of the compression.
+            _ => self.exposure = None,
+        }
         if self.runs.push(time_us) == Place::Settling || self.settings.excludes(time_us) {
             return Ok(());
         }
@@ -153,7 +166,9 @@ impl SceneSweep {
             frames_used: if told { used } else { 0 },
             frames_left_out: self.frames - if told { used } else { 0 },
         };
-        SceneObservations { source, shape, intrinsics: self.intrinsics, motion, observations }
+        let stands = motion == MotionFinding::Still;
+        let exposure = self.exposure.filter(|_| stands).map(ExposureSweep::finish);
+        SceneObservations { source, shape, intrinsics: self.intrinsics, motion, observations, exposure }
     }
 
     /// Where the camera stands still, any pinhole will do: every surface stays in its pixel.

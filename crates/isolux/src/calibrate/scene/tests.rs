@@ -122,10 +122,8 @@ fn measure(walls: &Walls, poses: &[Rigid], times_us: &[f64], motion: CameraMotio
 }
 
 fn fit(scene: SceneObservations) -> (Calibration, FitReport) {
-    {
-        let measured = Measurements { scenes: vec![scene], ..Measurements::default() };
-        ExposureFit::new(&settings(), Vec::new()).unwrap().and(&settings(), None, measured).unwrap()
-    }
+    let measured = Measurements { scenes: vec![scene], ..Measurements::default() };
+    ExposureFit::new(&settings(), Vec::new()).unwrap().and(&settings(), None, measured).unwrap()
 }
 
 fn refused(report: &FitReport) -> Vec<Factor> {

@@ -1,5 +1,7 @@
 //! `isolux figures`: what isolux reaches, measured here and now.
 
+mod real;
+
 use isolux_paper::beyond::figure::Figure;
 use isolux_paper::beyond::figures;
 
@@ -10,8 +12,11 @@ use crate::failure::{Failure, Outcome};
 pub(crate) fn run(args: &FiguresArgs) -> Outcome {
     let progress = console::steps();
     let found = figures::simulated(&mut |step| progress.set_message(step.to_owned()));
+    let mut found = found.map_err(Failure::data)?;
+    if let Some(folder) = &args.recordings {
+        found.extend(real::figures(folder, &mut |step| progress.set_message(step.to_owned()))?);
+    }
     progress.finish_and_clear();
-    let found = found.map_err(Failure::data)?;
     if args.json {
         return console::print_json(&found.iter().map(json).collect::<Vec<_>>());
     }
