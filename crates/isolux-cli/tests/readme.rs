@@ -44,3 +44,17 @@ fn its_figures_are_those_of_the_demo() {
     }
     assert!(folder.join("CAMERA.json").is_file() && folder.join("demo.json").is_file());
 }
+
+/// The short table of what isolux reaches has the figures of the long one, which a test of its own measures.
+#[test]
+fn its_short_table_is_taken_from_the_docs() {
+    let docs = include_str!("../../../docs/figures.md");
+    let table =
+        README.split("| | raw | A d²/t |").nth(1).expect("the table").split("\n\n").next().expect("its end");
+    let is_figure = |word: &&str| word.contains('.') && word.parse::<f64>().is_ok();
+    let figures: Vec<&str> = table.split_whitespace().filter(is_figure).collect();
+    assert!(figures.len() >= 12, "{figures:?}");
+    for figure in figures {
+        assert!(docs.contains(&format!(" {figure} ")), "{figure} is not in docs/figures.md");
+    }
+}
