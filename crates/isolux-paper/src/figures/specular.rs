@@ -58,7 +58,8 @@ pub(super) fn section(lab: &Lab) -> Result<Section, PaperError> {
                  (99.9th percentile) as a share of the maximum: how much of the grey scale is left to the scene itself. \
                  Then the limited share of all pixels and of those of highlights (spots), and the maximum that is left \
                  (max). Pixels of highlights owe most of their light to them; many are still darker than the board, and \
-                 no single cut can reach those."
+                 no single cut can reach those. The last rule is not the paper's: the knee cuts nothing off, but compresses \
+                 what is above the histogram's cutoff into a quarter of it, in its order."
                     .to_owned(),
             ),
             Block::Table(table("specular-raw", "The raw amplitude at 8.2 ms", &cases.raw)),

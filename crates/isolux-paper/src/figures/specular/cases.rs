@@ -1,7 +1,7 @@
 //! What each rule does to one image: where it cuts, what it limits, and how much of the bright foreground's
 //! structure it leaves.
 
-use isolux::specular::{HistogramRule, PercentRule, SigmaRule, SpecularRule};
+use isolux::specular::{HistogramRule, KneeRule, PercentRule, SigmaRule, SpecularRule};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::statistics::quantile;
 use isolux::{PixelFlags, Plane};
@@ -22,12 +22,13 @@ const HIGHLIGHT_SPECULAR_FRACTION: f32 = 0.5;
 /// The brightest matt value, without stray pixels.
 const BRIGHTEST_FRACTION: f64 = 0.999;
 
-/// The rules in the order of the page.
-pub(super) const RULES: [(&str, SpecularRule); 4] = [
+/// The rules in the order of the page: the paper's, then the one that keeps the order of the highlights.
+pub(super) const RULES: [(&str, SpecularRule); 5] = [
     ("0.9 of maximum", SpecularRule::Percent(PercentRule::OfMaximum(0.9))),
     ("upper 10 %", SpecularRule::Percent(PercentRule::Quantile(0.9))),
     ("mean + 4σ", SpecularRule::Sigma(SigmaRule { deviations: 4.0 })),
     ("histogram", SpecularRule::Histogram(HistogramRule { occurrences: None })),
+    ("knee", SpecularRule::Knee(KneeRule { cutoff: HistogramRule { occurrences: None } })),
 ];
 
 /// Places of the rules in [`RULES`].
@@ -47,7 +48,7 @@ pub(super) struct Case {
     /// Brightest matt value / maximum before.
     pub(super) range_used: f64,
     /// In the order of [`RULES`].
-    pub(super) outcomes: [Outcome; 4],
+    pub(super) outcomes: [Outcome; RULES.len()],
 }
 
 /// One image under one rule. Shares are 0..1.
@@ -100,13 +101,13 @@ impl Case {
                 after: out.amplitude,
             })
         };
-        let [first, second, third, fourth] = RULES.map(outcome);
+        let [first, second, third, fourth, fifth] = RULES.map(outcome);
         Ok(Self {
             foreground_share: share(&parts.foreground, &vec![true; parts.foreground.len()]),
             highlight_pixels: parts.highlight.iter().filter(|member| **member).count(),
             range_used: range_used(&before, &parts.matt),
             before,
-            outcomes: [first?, second?, third?, fourth?],
+            outcomes: [first?, second?, third?, fourth?, fifth?],
         })
     }
 }
