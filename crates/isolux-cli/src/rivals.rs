@@ -1,7 +1,9 @@
 //! The chains that an evaluation shows beside the chosen one, on the same frames: the textbook's and the paper's.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator};
-use isolux::standardize::{DistanceStep, Method, SpecularStep, StandardizeError, TimeStep};
+use isolux::standardize::{
+    DistanceStep, Method, ProfileStep, SpecularStep, StandardizeError, Stream, TimeStep,
+};
 use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardized, Standardizer};
 
 /// What is done with a frame by an evaluator.
@@ -39,9 +41,10 @@ impl Rivals {
     pub(crate) fn new(
         chosen: &Standardizer,
         calibration: Option<&Calibration>,
-        available: Channels,
+        stream: Stream,
         shape: Shape,
     ) -> Self {
+        let available = stream.channels;
         let distance =
             if available.contains(Channels::DISTANCE) { DistanceStep::Square } else { DistanceStep::None };
         let time =
@@ -49,13 +52,14 @@ impl Rivals {
         let textbook = Choice {
             time: Some(time),
             distance: Some(distance),
+            profile: Some(ProfileStep::Off),
             specular: Some(SpecularStep::None),
             ..Choice::default()
         };
         let paper = Choice { method: Method::Paper, ..Choice::default() };
         let rival = |(name, choice): (&'static str, Choice)| {
             // A chain that cannot be planned here is nobody's rival.
-            let standardizer = Standardizer::plan(&choice, calibration, available).ok()?;
+            let standardizer = Standardizer::plan_for(&choice, calibration, stream).ok()?;
             let same = does_the_same(&standardizer, chosen) || standardizer.steps().is_empty();
             let evaluator = Evaluator::new(shape, EvaluationSettings::default());
             let flags = Plane::filled(shape, PixelFlags::empty());

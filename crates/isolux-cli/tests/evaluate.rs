@@ -56,3 +56,21 @@ fn the_table_and_the_page_show_all_chains() {
     let run = sandbox.run("evaluate patches-smoke");
     assert!(run.stdout.starts_with("figure") && !run.stdout.contains("textbook"), "{}", run.stdout);
 }
+
+/// A profile of another image format is nobody's step: the chosen chain says so, and its rivals know none.
+#[test]
+fn a_profile_of_another_format_stops_nobody() {
+    let sandbox = calibrated();
+    let mut camera = sandbox.json("CAMERA.json");
+    camera["terms"]["profile"] = serde_json::json!({
+        "version": 1, "height": 10, "width": 12, "origin_px": [4.5, 5.5], "radial": [0.0, 0.0],
+        "tensor": [0.0; 48], "support": ["################"; 12], "fitted_on": [],
+        "fit": {"points": 1, "residual": 0.0}, "warnings": []
+    });
+    sandbox.write("CAMERA.json", camera.to_string());
+    let run = sandbox.run("evaluate patches-smoke -c CAMERA.json --json");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stderr.contains("profile"), "{}", run.stderr);
+    let told: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(told["beside"][0]["steps"], serde_json::json!(["linear", "square"]));
+}

@@ -28,7 +28,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
         Rivals::none()
     } else {
         let metadata = recording.metadata();
-        Rivals::new(&standardizer, calibration.as_ref(), metadata.available, metadata.shape)
+        Rivals::new(&standardizer, calibration.as_ref(), frames::stream(metadata), metadata.shape)
     };
     let assessment = assess(&mut *recording, &standardizer, calibration.as_ref(), pixels, rivals)?;
     if let Some(report) = &args.report {

@@ -18,7 +18,7 @@ pub struct FitReport {
     pub exposure_curves: Vec<ExposureCurve>,
     /// Reference decays as they entered the cubic, with what became of them.
     pub decays: Vec<(Decay, DecayUse)>,
-    /// What became of the same decays in the spline; empty where there is none.
+    /// What became of the decays that the spline was fitted on; empty where there is none.
     pub spline_uses: Vec<SplineUse>,
     /// What the fit of targets found.
     pub target: Option<TargetReport>,
@@ -215,7 +215,12 @@ fn fit_distance(
     found.extend(warning::about_decays(&decays, &uses));
     cubic.warnings = words(&found);
     cubic.fitted_on.clone_from(&sources);
-    let linear: Vec<Decay> = linear_sweeps.into_iter().flat_map(|sweep| sweep.decays).collect();
+    let mut linear = Vec::new();
+    for sweep in linear_sweeps {
+        let new = sweep.warnings.into_iter().filter(|warning| !found.contains(warning)).collect::<Vec<_>>();
+        found.extend(new);
+        linear.extend(sweep.decays);
+    }
     let smooth = if linear.is_empty() { &decays } else { &linear };
     match Spline::fit(smooth, reference_m, settings.modulation_frequency_hz) {
         Ok((mut spline, uses)) => {

@@ -322,7 +322,7 @@ impl fmt::Display for FitWarning {
                 time(*integration_time_us)
             ),
             Self::NoTier { tier, reason } => {
-                write!(f, "exposure sweep: no response by `{tier}`: {reason}")
+                write!(f, "no response by `{tier}`: {reason}")
             }
             Self::NoSpline { reason } => write!(f, "distance sweep: no spline beside the cubic: {reason}"),
             Self::Outliers { integration_time_us, outliers, positions } => write!(

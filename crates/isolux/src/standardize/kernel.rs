@@ -40,7 +40,8 @@ pub(super) fn pointwise(
         let outside = measured & ((d < distance.min_m) | (d > distance.max_m));
         let low = a < low_signal_below_dn;
         out[i] = if invalid { f32::NAN } else { value };
-        flags[i] |= when(invalid, PixelFlags::INVALID)
+        flags[i] = flags[i].difference(when(invalid, PixelFlags::ILLUMINATION_OUT_OF_RANGE))
+            | when(invalid, PixelFlags::INVALID)
             | when(outside, PixelFlags::DISTANCE_OUT_OF_RANGE)
             | when(low & !invalid, PixelFlags::LOW_SIGNAL);
     }

@@ -33,6 +33,9 @@ pub(super) struct Linearised {
     distance_m: Plane<f32>,
 }
 
+/// The value of a pixel whose fill was not measured: not saturated, but no value either.
+const UNKNOWN: Option<f32> = Some(f32::NAN);
+
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Repaired {
@@ -83,7 +86,12 @@ impl Linearised {
                     }
                     IntegrationTime::PerPixel(map) => {
                         let times_us = map.values();
-                        self.each(flags, |i| planned.linearise(i, amplitude[i], f64::from(times_us[i])));
+                        // The time step says of a pixel without a time that it has none.
+                        let linear = |i: usize| match f64::from(times_us[i]) {
+                            time_us if time_us > 0.0 => planned.linearise(i, amplitude[i], time_us),
+                            _ => Some(amplitude[i]),
+                        };
+                        self.each(flags, linear);
                     }
                 }
                 Ok(Repaired::Amplitude)
@@ -91,14 +99,20 @@ impl Linearised {
             Lineariser::Intensity(planned) => {
                 let channel = StandardizeError::FillMissing { channel: "intensity" };
                 let intensity = frame.intensity.as_ref().ok_or(channel)?.values();
-                self.each(flags, |i| planned.linearise(intensity[i], amplitude[i]));
+                self.each(flags, |i| match intensity[i].is_nan() {
+                    true => UNKNOWN,
+                    false => planned.linearise(intensity[i], amplitude[i]),
+                });
                 Ok(Repaired::Amplitude)
             }
             Lineariser::PhaseSamples(planned) => {
                 let channel = StandardizeError::FillMissing { channel: "phase_samples" };
                 let [a1, a2, a3, a4] =
                     frame.phase_samples.as_ref().ok_or(channel)?.each_ref().map(Plane::values);
-                let linear = |i: usize| planned.linearise([a1[i], a2[i], a3[i], a4[i]]);
+                let linear = |i: usize| match [a1[i], a2[i], a3[i], a4[i]] {
+                    bins if bins.iter().any(|bin| bin.is_nan()) => UNKNOWN.map(|unknown| (unknown, 0.0)),
+                    bins => planned.linearise(bins),
+                };
                 match &frame.distance_m {
                     Some(distance_m) if planned.repairs_distance() => {
                         let delivered = distance_m.values();
@@ -107,7 +121,11 @@ impl Linearised {
                         let repaired = distance_m.values_mut();
                         repaired.copy_from_slice(delivered);
                         each(amplitude, flags, |i| {
-                            let (amplitude, shift_m) = linear(i)?;
+                            let Some((amplitude, shift_m)) = linear(i) else {
+                                // Clipped bins tell no distance that neighbours could be smoothed with.
+                                repaired[i] = f32::NAN;
+                                return None;
+                            };
                             // What is no distance must not become one.
                             if delivered[i] > 0.0 {
                                 repaired[i] += shift_m;

@@ -309,10 +309,11 @@ impl Standardizer {
         const ONES: [f32; BLOCK] = [1.0; BLOCK];
         let law = self.plan.distance.unwrap_or(DistanceGain::ONE);
         let table = self.plan.distance_table.as_ref();
+        let amplitudes = repaired.map_or(frame.amplitude.values(), |_| out.linearised.amplitude());
         let mut predictor = self.plan.sigma.as_ref().map(|plan| {
             let law = self.plan.distance.as_ref().map(|law| (law, table));
             let scratch = sigma::plane(&mut out.sigma, frame.shape()).values_mut();
-            Predictor::new(plan, frame, law, &mut out.denoiser, scratch)
+            Predictor::new(plan, frame, amplitudes, law, &mut out.denoiser, scratch)
         });
         let own_distance_m = match repaired {
             Some(Repaired::AmplitudeAndDistance) => Some(out.linearised.distance_m()),
@@ -342,7 +343,6 @@ impl Standardizer {
         if let TimeGain::Uniform(gain) = gain {
             gains.fill(gain);
         }
-        let amplitudes = repaired.map_or(frame.amplitude.values(), |_| out.linearised.amplitude());
         let blocks = amplitudes.chunks(BLOCK).enumerate();
         let outputs =
             out.amplitude.values_mut().chunks_mut(BLOCK).zip(out.flags.values_mut().chunks_mut(BLOCK));

@@ -23,6 +23,8 @@ const LARGEST_BIAS: f32 = 0.25;
 #[derive(Clone, Copy)]
 pub(super) struct Predictor<'a> {
     frame: &'a Frame,
+    /// As the response leaves it.
+    amplitude: &'a [f32],
     light: Light<'a>,
     /// σ_d in m of a pixel of signal-to-noise ratio 1.
     unit_noise_m: f32,
@@ -42,7 +44,7 @@ struct Light<'a> {
 }
 
 impl<'a> Light<'a> {
-    fn of(plan: &SigmaPlan, frame: &'a Frame) -> Self {
+    fn of(plan: &SigmaPlan, frame: &'a Frame, amplitude: &'a [f32]) -> Self {
         if let (Some(noise), Some(intensity)) = (plan.noise.by_intensity, &frame.intensity) {
             let (read, shot) = (noise.read_variance_dn2 as f32, noise.shot_variance_dn2_per_dn as f32);
             return Self { read, shot, ambient: 0.0, dn: intensity.values() };
@@ -53,7 +55,7 @@ impl<'a> Light<'a> {
             read: read_variance_dn2 as f32,
             shot: shot_variance_dn2_per_dn as f32,
             ambient: ambient_variance_dn2_per_us as f32,
-            dn: frame.amplitude.values(),
+            dn: amplitude,
         }
     }
 
@@ -85,25 +87,27 @@ fn shot(light_dn: &[f32], per_dn: f32, variance: &mut [f32]) {
 }
 
 impl<'a> Predictor<'a> {
-    /// `scratch` (one per pixel) is overwritten; `distance_m` is the one that is scaled by, before denoising.
+    /// `amplitude` is the frame's, linear where the response makes it so; `scratch` (one per pixel) is overwritten.
     pub(super) fn new(
         plan: &SigmaPlan,
         frame: &'a Frame,
+        amplitude: &'a [f32],
         law: Option<(&'a DistanceGain, Option<&'a DistanceTable>)>,
         denoiser: &mut Denoiser,
         scratch: &mut [f32],
     ) -> Self {
-        let light = Light::of(plan, frame);
+        let light = Light::of(plan, frame, amplitude);
         let (law, table) = law.unwrap_or((&DistanceGain::ONE, None));
         let unit_noise_m = match (plan.unit_noise_m, &frame.distance_m) {
             (Some(known_m), _) => known_m,
             (None, Some(distance_m)) if *law != DistanceGain::ONE => {
-                signal_to_noise(frame, light, scratch);
+                signal_to_noise(frame, amplitude, light, scratch);
                 denoiser.unit_noise_m(frame, distance_m, scratch)
             }
             _ => 0.0,
         };
-        Self { frame, light, unit_noise_m: unit_noise_m as f32, law, table, variance_left: &[] }
+        let unit_noise_m = unit_noise_m as f32;
+        Self { frame, amplitude, light, unit_noise_m, law, table, variance_left: &[] }
     }
 
     /// With the distances denoised.
@@ -114,7 +118,7 @@ impl<'a> Predictor<'a> {
     /// Writes the σ of one block, and takes the bias off its values. `start` is the block's first pixel.
     pub(super) fn predict(&self, start: usize, distance_m: &[f32], values: &mut [f32], sigma: &mut [f32]) {
         let count = values.len();
-        let amplitude = &self.frame.amplitude.values()[start..start + count];
+        let amplitude = &self.amplitude[start..start + count];
         let (mut noise, mut slope, mut curvature) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
         self.light.variances(self.frame, start, &mut noise[..count]);
         relative_noise(amplitude, &mut noise[..count]);
@@ -137,16 +141,16 @@ impl<'a> Predictor<'a> {
 }
 
 /// a/σ_a of every pixel.
-fn signal_to_noise(frame: &Frame, light: Light<'_>, out: &mut [f32]) {
-    let amplitudes = frame.amplitude.values().chunks(BLOCK);
+fn signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out: &mut [f32]) {
+    let amplitudes = amplitude.chunks(BLOCK);
     for (index, (amplitude, out)) in amplitudes.zip(out.chunks_mut(BLOCK)).enumerate() {
         light.variances(frame, index * BLOCK, out);
         out.iter_mut().zip(amplitude).for_each(|(out, amplitude)| *out = amplitude / out.sqrt());
     }
 }
 
-/// From the variance to `σ_a²/a²`. A step that linearizes the amplitude before the others multiplies it by the square
-/// of d ln A_lin / d ln A.
+/// From the variance to `σ_a²/a²`, both of the linear amplitude: shot noise is that of the light, whatever the well
+/// keeps of it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
 fn relative_noise(amplitude: &[f32], variance: &mut [f32]) {
     for (variance, &a) in variance.iter_mut().zip(amplitude) {

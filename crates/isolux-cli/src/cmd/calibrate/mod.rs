@@ -189,6 +189,9 @@ fn target_windows(
     let intrinsics = frames::stream(isolux_io::open(path)?.metadata()).intrinsics;
     let mut sweep = TargetSweep::new(path.display().to_string(), settings, intrinsics);
     let lineariser = lineariser(path, response)?;
+    if lineariser.is_some() {
+        sweep = sweep.of_linear_frames();
+    }
     let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
     let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
     measure(path, "target", Channels::TARGET | besides, cameras, |frame| match &mut lineariser {
@@ -204,7 +207,7 @@ fn lineariser(path: &Path, response: Option<&Response>) -> Outcome<Option<FrameL
     Ok(FrameLineariser::new(response, isolux_io::open(path)?.metadata().available))
 }
 
-/// A linear copy of `frame`, in memory that is kept from frame to frame.
+/// A linear copy of `frame`.
 fn linearised<'a>(
     lineariser: &mut FrameLineariser,
     frame: &Frame,

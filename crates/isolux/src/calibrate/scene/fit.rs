@@ -94,12 +94,14 @@ fn fit_response(
     calibration: &mut Calibration,
     warnings: &mut Vec<FitWarning>,
 ) {
+    if calibration.terms.response.is_some() {
+        return;
+    }
     let several = |curve: &&ExposureCurve| curve.samples.len() > 1;
     let curves: Vec<ExposureCurve> =
         scenes.iter().filter_map(|scene| scene.exposure.as_ref()).filter(several).cloned().collect();
     let Some(lut) = calibration.terms.lut.as_ref().filter(|_| !curves.is_empty()) else { return };
-    let found = response::fit_response(settings, &curves, lut, warnings);
-    Put { warnings }.at("response", &mut calibration.terms.response, found);
+    calibration.terms.response = response::fit_response(settings, &curves, lut, warnings);
 }
 
 /// Share of the weighted observations that the fit has rejected.

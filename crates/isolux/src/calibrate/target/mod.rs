@@ -40,6 +40,7 @@ pub struct TargetSweep {
     incidence: Incidence,
     windows: Vec<Window>,
     without_normal: usize,
+    linear: bool,
 }
 
 /// One window of one frame.
@@ -69,6 +70,8 @@ pub struct TargetWindows {
     pub(super) frames_used: usize,
     pub(super) windows: Vec<Window>,
     pub(super) without_normal: usize,
+    /// Made linear before they were measured.
+    pub(super) linear: bool,
 }
 
 impl TargetWindows {
@@ -105,7 +108,15 @@ impl TargetSweep {
             incidence: Incidence::default(),
             windows: Vec::new(),
             without_normal: 0,
+            linear: false,
         }
+    }
+
+    /// Says that the frames are linear in the light, as [`FrameLineariser`](crate::standardize::FrameLineariser) makes
+    /// them: their amplitudes grow with the integration time itself, not with the table.
+    #[must_use]
+    pub fn of_linear_frames(self) -> Self {
+        Self { linear: true, ..self }
     }
 
     /// Measures the next frame. Its integration time may be unknown or a map, its distance missing.
@@ -155,6 +166,7 @@ impl TargetSweep {
             frames_used: self.frames_used,
             windows: self.windows,
             without_normal: self.without_normal,
+            linear: self.linear,
         }
     }
 }

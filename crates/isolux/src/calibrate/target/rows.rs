@@ -3,10 +3,10 @@
 use super::TargetWindows;
 use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation, TimeModel};
 use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, REFERENCE_TIME_US};
 use crate::terms::lut::LutAnswer;
 use crate::terms::profile::Places;
-use crate::terms::{Lut, Spline};
+use crate::terms::{Lut, Spline, linear};
 
 /// Windows as observations.
 pub(super) struct Rows {
@@ -29,7 +29,11 @@ impl Rows {
     ) -> Result<Self, CalibrateError> {
         let places = places(targets)?;
         warn(targets, warnings);
-        let known = Known { lut: calibration.terms.lut.as_ref(), spline: calibration.terms.spline.as_ref() };
+        let known = Known {
+            lut: calibration.terms.lut.as_ref(),
+            reference_us: calibration.reference.integration_time_us.unwrap_or(REFERENCE_TIME_US),
+            spline: calibration.terms.spline.as_ref(),
+        };
         let times_us = if known.lut.is_some() { Vec::new() } else { times(targets) };
         let mut rows = Self {
             observations: Vec::new(),
@@ -42,7 +46,10 @@ impl Rows {
         let mut first_frame = 0;
         for (number, target) in targets.iter().enumerate() {
             for window in &target.windows {
-                let Some(correction) = known.correction(window.time_us, window.distance_m) else { continue };
+                let Some(correction) = known.correction(target.linear, window.time_us, window.distance_m)
+                else {
+                    continue;
+                };
                 let time = rows.times_us.iter().position(|time| *time == window.time_us).unwrap_or(0);
                 let surface = rows.surface(number, window.label);
                 let [row, column] = window.pixel.map(f64::from);
@@ -84,13 +91,16 @@ impl Rows {
 /// Terms that sweeps have fitted already.
 struct Known<'a> {
     lut: Option<&'a Lut>,
+    reference_us: f64,
     spline: Option<&'a Spline>,
 }
 
 impl Known<'_> {
     /// What takes the known terms out of ln A; `None` where a term does not reach.
-    fn correction(&self, time_us: f32, distance_m: f32) -> Option<f64> {
-        let time = match self.lut.filter(|_| !time_us.is_nan()).map(|lut| lut.at(f64::from(time_us))) {
+    fn correction(&self, is_linear: bool, time_us: f32, distance_m: f32) -> Option<f64> {
+        let lut = self.lut.filter(|_| !time_us.is_nan());
+        let time = match lut.map(|lut| lut.at(f64::from(time_us))) {
+            Some(_) if is_linear => linear::multiplier(f64::from(time_us), self.reference_us).ln(),
             None => 0.0,
             Some(LutAnswer::Inside(multiplier) | LutAnswer::Below(multiplier)) => multiplier.ln(),
             Some(LutAnswer::Refused) => return None,

@@ -99,6 +99,9 @@ impl PixelResponse {
         check_softness("response.pixel.softness", self.softness)?;
         let fill = self.largest_fill;
         require(fill > 0.0 && fill <= 2.0, "response.pixel.largest_fill", fill, "a fill above 0, at most 2")?;
+        let [first, last] = self.valid_integration_time_us;
+        let (field, found) = ("response.pixel.valid_integration_time_us", format!("{first} to {last}"));
+        require(0.0 < first && first <= last && last.is_finite(), field, found, "two times in µs, rising")?;
         let Shape { height, width } = self.shape();
         let field = "response.pixel.full_well_time_us";
         let even = width > 0 && self.full_well_time_us.iter().all(|row| row.len() == width);
@@ -116,6 +119,7 @@ impl PixelResponse {
             shape: self.shape(),
             full_well_time_us: taus.map(|tau| tau.map_or(f64::INFINITY, f64::from)).collect(),
             softness: self.softness,
+            longest_time_us: self.valid_integration_time_us[1],
             largest_fill: self.largest_fill,
         }
     }
@@ -128,13 +132,15 @@ pub(crate) struct PlannedPixels {
     full_well_time_us: Vec<f64>,
     softness: f64,
     largest_fill: f64,
+    longest_time_us: f64,
 }
 
 impl PlannedPixels {
-    /// Linear amplitude of pixel `index`; `None` where it is fuller than the fit knows, or the time is none.
+    /// Linear amplitude of pixel `index`; `None` where it is fuller, or the time longer, than the fit knows: a pixel that
+    /// was not seen to be compressed may be later.
     pub(crate) fn linearise(&self, index: usize, amplitude_dn: f32, time_us: f64) -> Option<f32> {
         let fill = time_us / self.full_well_time_us[index];
-        if fill.is_nan() || fill > self.largest_fill {
+        if fill.is_nan() || fill > self.largest_fill || time_us > self.longest_time_us {
             return None;
         }
         let slope = SoftWell { softness: self.softness }.slope(fill);
