@@ -67,16 +67,16 @@ pub(crate) struct InfoArgs {
 /// compression of each pixel (`response`: the more channels, the better) and the noise of the amplitude (`noise`), a
 /// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance, a target the smooth law, the
 /// illumination profile (`profile`) and the angle of incidence (`angle`) together, a scene `lut`, `spline`,
-/// `profile` and `angle` as far as it goes, without knowing any surface. What no recording determines is left out, and why is said; what a sweep or a
-/// target determines is not taken from a scene.
+/// `profile` and `angle` as far as it goes, without knowing any surface. What no recording determines is left out,
+/// and why is said; what a sweep or a target determines is not taken from a scene.
 ///
 /// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
 /// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
 /// distances and a few integration times; the reference distance among them. Target: any recording with the `target`
 /// channel (equal labels above 0 are one material); best a matt board, carried through the whole image from near to
 /// far and tilted by up to 60°. Scene: any recording of things that stand still. With the camera still and several
-/// integration times it gives the table and the response; with the camera moving, nearer and farther and turning, everything. The motion
-/// is that of `world_from_camera`, or is estimated from the distances.
+/// integration times it gives the table and the response; with the camera moving, nearer and farther and turning,
+/// everything else. The motion is that of `world_from_camera`, or is estimated from the distances.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \

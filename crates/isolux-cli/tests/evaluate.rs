@@ -64,7 +64,7 @@ fn a_profile_of_another_format_stops_nobody() {
     let mut camera = sandbox.json("CAMERA.json");
     camera["terms"]["profile"] = serde_json::json!({
         "version": 1, "height": 10, "width": 12, "origin_px": [4.5, 5.5], "radial": [0.0, 0.0],
-        "tensor": [0.0; 48], "support": ["################"; 12], "fitted_on": [],
+        "tensor": vec![0.0; 48], "support": vec!["################"; 12], "fitted_on": [],
         "fit": {"points": 1, "residual": 0.0}, "warnings": []
     });
     sandbox.write("CAMERA.json", camera.to_string());

@@ -11,6 +11,7 @@ use isolux::calibrate::{
     CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureFit, ExposureSweep, FitReport,
     Measurements, ReferenceDecays, TargetSweep, TargetWindows,
 };
+use isolux::calibration::Terms;
 use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 use isolux::{Calibration, Channels, Frame, Reference};
@@ -47,8 +48,13 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         modulation_frequency_hz: None,
     };
     let (calibration, report) = fit(&settings, args.camera.clone(), inputs)?;
-    isolux_io::write_calibration(&calibration, &args.output)?;
     report.warnings.iter().for_each(console::warn);
+    if calibration.terms == Terms::default() {
+        return Err(Failure::data(
+            "no term could be fitted from these recordings, for the reasons above: no calibration is written",
+        ));
+    }
+    isolux_io::write_calibration(&calibration, &args.output)?;
     if args.json {
         return console::print_json(&calibration);
     }

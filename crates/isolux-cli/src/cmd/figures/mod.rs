@@ -10,6 +10,9 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 
 pub(crate) fn run(args: &FiguresArgs) -> Outcome {
+    if let Some(folder) = &args.recordings {
+        real::expect_recordings(folder)?;
+    }
     let progress = console::steps();
     let found = figures::simulated(&mut |step| progress.set_message(step.to_owned()));
     let mut found = found.map_err(Failure::data)?;

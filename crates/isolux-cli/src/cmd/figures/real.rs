@@ -15,21 +15,27 @@ const NEAREST_M: f64 = 0.68;
 /// Their label.
 const WHITE: u8 = 1;
 
-/// Measures those recordings that are in `folder`, by their names.
+/// The recordings that have figures, by their names.
+const MEASURED: [(&str, Measure); 2] =
+    [("kinect2-checkerboard", checkerboard), ("ifm-o3d303", vendor_scaling)];
+
+/// Measures those recordings that are in `folder`.
 pub(super) fn figures(folder: &Path, progress: &mut dyn FnMut(&str)) -> Outcome<Vec<Figure>> {
     let mut figures = Vec::new();
-    let mut found = false;
-    for (name, measure) in [("kinect2-checkerboard", checkerboard as Measure), ("ifm-o3d303", vendor_scaling)]
-    {
+    for (name, measure) in MEASURED {
         let path = folder.join(name);
         if path.is_dir() {
             progress(name);
             figures.extend(measure(&mut *isolux_io::open(&path)?)?);
-            found = true;
         }
     }
-    if found {
-        return Ok(figures);
+    Ok(figures)
+}
+
+/// Refuses a folder without any of them, before anything takes time.
+pub(super) fn expect_recordings(folder: &Path) -> Outcome {
+    if MEASURED.iter().any(|(name, _)| folder.join(name).is_dir()) {
+        return Ok(());
     }
     Err(Failure::data(format!(
         "`{}`: no recording found that has a figure, kinect2-checkerboard or ifm-o3d303 expected",

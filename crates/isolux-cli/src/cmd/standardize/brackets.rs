@@ -1,7 +1,7 @@
 //! Which frames of a recording make one bracket, and merging them.
 
 use isolux::standardize::{BracketMerge, FrameSummary};
-use isolux::{Channels, IntegrationTime, Shape, Standardized, Standardizer};
+use isolux::{Channels, IntegrationTime, PixelFlags, Shape, Standardized, Standardizer};
 use isolux_io::Recording;
 
 use crate::failure::{Failure, Outcome};
@@ -69,6 +69,8 @@ pub(super) struct Merging {
     merge: BracketMerge,
     lengths: std::vec::IntoIter<usize>,
     left: usize,
+    /// Pixels that every frame so far refuses for its time, at most.
+    refused: usize,
     pub(super) out: Standardized,
 }
 
@@ -83,17 +85,33 @@ impl Merging {
         })?;
         let mut lengths = brackets.lengths.clone().into_iter();
         let left = lengths.next().unwrap_or(0);
-        Ok((frames, Self { merge, lengths, left, out: Standardized::new(Shape::new(0, 0)) }))
+        Ok((
+            frames,
+            Self { merge, lengths, left, refused: usize::MAX, out: Standardized::new(Shape::new(0, 0)) },
+        ))
     }
 
     /// Takes the next frame; the merged one is in `out` when this was the last of its bracket.
-    pub(super) fn push(&mut self, frame: &Standardized) -> Result<Option<FrameSummary>, Failure> {
+    pub(super) fn push(
+        &mut self,
+        frame: &Standardized,
+        summary: &FrameSummary,
+    ) -> Result<Option<FrameSummary>, Failure> {
+        self.refused = self.refused.min(summary.time_refused);
         self.merge.push(frame).map_err(Failure::data)?;
         self.left = self.left.saturating_sub(1);
         if self.left > 0 {
             return Ok(None);
         }
         self.left = self.lengths.next().unwrap_or(0);
-        Ok(Some(self.merge.finish(&mut self.out)))
+        let merged = self.merge.finish(&mut self.out);
+        let extrapolated = |flags: &&PixelFlags| {
+            flags.contains(PixelFlags::TIME_OUT_OF_RANGE) && !flags.contains(PixelFlags::INVALID)
+        };
+        Ok(Some(FrameSummary {
+            time_refused: std::mem::replace(&mut self.refused, usize::MAX),
+            time_extrapolated: self.out.flags.values().iter().filter(extrapolated).count(),
+            ..merged
+        }))
     }
 }

@@ -147,7 +147,7 @@ pub(crate) fn standardize(
                     write(&mut writer, &slot.out)?;
                 }
                 Some(merging) => {
-                    if let Some(merged) = merging.push(&slot.out)? {
+                    if let Some(merged) = merging.push(&slot.out, &taken)? {
                         summary.add(merged);
                         write(&mut writer, &merging.out)?;
                     }
