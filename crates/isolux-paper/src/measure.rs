@@ -1,7 +1,8 @@
 //! Rendering scenes frame by frame, and means over windows of them.
 
-use isolux::{Frame, Shape, Window};
-use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
+use isolux::statistics::quantile;
+use isolux::{Frame, IntegrationTime, Shape, Window};
+use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation, Truth};
 
 use crate::error::PaperError;
 use crate::lab::WINDOW_PX;
@@ -91,4 +92,20 @@ pub(crate) fn coefficient_of_variation(values: &[f64]) -> f64 {
     let count = finite.len() as f64;
     let mean = finite.iter().sum::<f64>() / count;
     (finite.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt() / mean
+}
+
+/// The frame's one integration time, µs, where it has one.
+pub(crate) fn time_us(frame: &Frame) -> Option<f64> {
+    match frame.integration_time_us {
+        IntegrationTime::PerFrame(time_us) => Some(time_us),
+        _ => None,
+    }
+}
+
+/// Share of its linear amplitude that a pixel keeps: 5 % quantile, so of the pixels that saturate most.
+pub(crate) fn kept(truth: &Truth) -> f64 {
+    let pairs = truth.noise_free_amplitude.values().iter().zip(truth.linear_amplitude.values());
+    let mut ratios: Vec<f64> =
+        pairs.map(|(with, without)| f64::from(with / without)).filter(|ratio| ratio.is_finite()).collect();
+    quantile(&mut ratios, 0.05).unwrap_or(f64::NAN)
 }

@@ -7,7 +7,7 @@ use isolux::{Frame, PixelFlags, Standardized, Standardizer, Window};
 use isolux_camera::{Scene, Simulation};
 
 use super::chains::Chain;
-use super::held_out::{HeldOut, MEASURED, cropped, time_us};
+use super::held_out::{HeldOut, MEASURED, cropped};
 use crate::error::PaperError;
 use crate::lab::WINDOW_PX;
 use crate::measure::{coefficient_of_variation, for_each};
@@ -51,7 +51,8 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<Vec<Decay>, Paper
         if snr(frame, window) < LEAST_SNR {
             return Ok(());
         }
-        let key = (simulation.frames()[index].pose, time_us(frame).to_bits());
+        let planned = simulation.frames()[index];
+        let key = (planned.pose, planned.integration_time_us.to_bits());
         let sums = positions.entry(key).or_insert_with(|| vec![[0.0; 2]; chains.len()]);
         for (standardizer, sum) in standardizers.iter().zip(sums) {
             standardizer.apply(frame, &mut out)?;

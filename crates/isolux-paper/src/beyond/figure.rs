@@ -99,6 +99,16 @@ impl fmt::Display for Figure {
     }
 }
 
+/// The largest of the values; NaN where any is missing, so that a figure that was not measured meets no aim.
+pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::NEG_INFINITY, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
+}
+
+/// The smallest; NaN where any is missing.
+pub(crate) fn smallest(values: impl Iterator<Item = f64>) -> f64 {
+    -largest(values.map(|value| -value))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +122,14 @@ mod tests {
         assert_eq!(met(0.5, Aim::None), None);
         for aim in [Aim::AtMost(1.0), Aim::AtLeast(0.0), Aim::Within(0.0, 1.0)] {
             assert_eq!(met(f64::NAN, aim), Some(false));
+        }
+    }
+
+    #[test]
+    fn a_missing_value_is_not_lost_among_the_others() {
+        assert_eq!((largest([1.0, 3.0].into_iter()), smallest([1.0, 3.0].into_iter())), (3.0, 1.0));
+        for values in [[f64::NAN, 1.0], [1.0, f64::NAN]] {
+            assert!(largest(values.into_iter()).is_nan() && smallest(values.into_iter()).is_nan());
         }
     }
 

@@ -5,13 +5,18 @@ use isolux::DenoiseRule;
 use super::bracket::{self, BracketCase};
 use super::chains::{self, Chain};
 use super::denoise::{self, Bars};
-use super::figure::{Aim, Figure, Unit};
+use super::figure::{Aim, Figure, Unit, largest, smallest};
 use super::held_out::{CAMERAS, HeldOut};
 use super::response::{self, FittedOn, Light};
 use super::self_calibration::{self, Deviation, Experiment, Poses, RunKind, SelfCalibration, Spoil};
 use super::sigma::{self, SigmaCase};
 use super::{decay, still, targets};
 use crate::error::PaperError;
+
+/// The most that is to be left of the reference decay: coefficient of variation.
+pub(crate) const DECAY_CV: f64 = 0.015;
+/// The most that the typical pixel of a still scene is to vary over integration times, beside the noise floor.
+pub(crate) const OVER_FLOOR: f64 = 1.25;
 
 /// Measures everything that needs no recording. `progress` is told what is being done.
 ///
@@ -47,7 +52,7 @@ fn decays(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
     let figure = |(index, chain): (usize, &Chain)| {
         let cv = largest(measured.iter().map(|decays| decays[index].cv));
         let what = format!("reference decay over all integration times, CV, worst camera: {}", chain.name);
-        let aim = if chain.is_ours() { Aim::AtMost(0.015) } else { Aim::None };
+        let aim = if chain.is_ours() { Aim::AtMost(DECAY_CV) } else { Aim::None };
         Figure::new("distance", what, cv, Unit::Percent, aim)
     };
     Ok(chains::ALL.iter().enumerate().map(figure).collect())
@@ -64,7 +69,7 @@ fn still_scenes(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
             "per-pixel CV over integration times beside the noise floor, worst camera: {}",
             chain.name
         );
-        let aim = if chain.is_ours() { Aim::AtMost(1.25) } else { Aim::None };
+        let aim = if chain.is_ours() { Aim::AtMost(OVER_FLOOR) } else { Aim::None };
         figures.push(Figure::new("time", what, ratio, Unit::Ratio, aim));
         if chain.is_ours() {
             let valid = measured.iter().map(|still| still.chains[index].valid).fold(f64::INFINITY, f64::min);
@@ -239,12 +244,4 @@ fn self_calibration(cameras: &[HeldOut]) -> Result<Vec<Figure>, PaperError> {
         figure("lut", 0.01, |found| found.time);
     }
     Ok(figures)
-}
-
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() { b } else { a.max(b) })
-}
-
-fn smallest(values: impl Iterator<Item = f64>) -> f64 {
-    -largest(values.map(|value| -value))
 }

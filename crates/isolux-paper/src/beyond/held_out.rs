@@ -3,7 +3,7 @@
 
 use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureFit, ExposureSweep, Measurements};
 use isolux::standardize::FrameLineariser;
-use isolux::{Calibration, Channels, Frame};
+use isolux::{Calibration, Channels};
 use isolux_camera::scene::run::RegisterRange;
 use isolux_camera::{CameraModel, Scene, Simulation};
 
@@ -88,12 +88,4 @@ pub(super) fn cropped(model: &CameraModel) -> CameraModel {
     let centre = (SIDE - 1) as f64 / 2.0;
     (model.intrinsics.cx, model.intrinsics.cy) = (centre, centre);
     model
-}
-
-/// The time of a frame, µs; NaN where it has no single one.
-pub(super) fn time_us(frame: &Frame) -> f64 {
-    match frame.integration_time_us {
-        isolux::IntegrationTime::PerFrame(time_us) => time_us,
-        _ => f64::NAN,
-    }
 }

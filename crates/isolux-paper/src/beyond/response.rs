@@ -8,6 +8,7 @@ use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standa
 use isolux_camera::{CameraModel, FullWell, Scene, SimulatedFrame, Simulation};
 
 use crate::error::PaperError;
+use crate::measure::time_us;
 
 /// The light besides the camera's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -255,10 +256,7 @@ fn measured(simulation: &Simulation, plans: &[Standardizer]) -> Result<(Vec<Stac
 
 /// The amplitudes by the true factors of compression and time.
 fn true_values(simulated: &SimulatedFrame) -> impl Iterator<Item = f64> {
-    let time_us = match simulated.frame.integration_time_us {
-        isolux::IntegrationTime::PerFrame(time_us) => time_us,
-        _ => f64::NAN,
-    };
+    let time_us = time_us(&simulated.frame).unwrap_or(f64::NAN);
     let truth = &simulated.truth;
     let planes = [&simulated.frame.amplitude, &truth.linear_amplitude, &truth.noise_free_amplitude];
     let [measured, linear, compressed] = planes.map(Plane::values);

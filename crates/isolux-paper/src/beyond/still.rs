@@ -2,14 +2,13 @@
 //! allows.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, SnrStratum};
-use isolux::statistics::quantile;
-use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
+use isolux::{PixelFlags, Plane, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::chains::Chain;
-use super::held_out::{HeldOut, MEASURED, time_us};
+use super::held_out::{HeldOut, MEASURED};
 use crate::error::PaperError;
-use crate::measure::for_each;
+use crate::measure::{for_each, time_us};
 
 /// Integration times at which no random camera saturates on the desk, µs.
 const TIMES_US: [f64; 6] = [1000.0, 2000.0, 4000.0, 8000.0, 12_000.0, 16_000.0];
@@ -71,7 +70,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Paper
         for (evaluator, plane) in evaluators.iter_mut().zip(planes) {
             evaluator.push(&EvaluationFrame::of_standardized(frame, plane, &shared))?;
         }
-        kept = kept_of(simulated);
+        kept = crate::measure::kept(&simulated.truth);
         Ok(())
     })?;
     let still = |evaluator: &Evaluator, valid: usize| {
@@ -95,24 +94,14 @@ fn true_factors(
     calibration: &isolux::Calibration,
     simulated: &SimulatedFrame,
 ) -> Plane<f32> {
-    let Frame { amplitude, integration_time_us: IntegrationTime::PerFrame(_), .. } = &simulated.frame else {
-        return simulated.frame.amplitude.clone();
-    };
+    let mut out = simulated.frame.amplitude.clone();
+    let Some(time_us) = time_us(&simulated.frame) else { return out };
     let reference_us = calibration.reference.integration_time_us.unwrap_or(f64::NAN);
     let reference_m = calibration.reference.distance_m;
-    let time = reference_us / time_us(&simulated.frame);
-    let mut out = amplitude.clone();
+    let time = reference_us / time_us;
     for (value, distance_m) in out.values_mut().iter_mut().zip(simulated.truth.true_distance_m.values()) {
         let response = model.distance_response(f64::from(*distance_m), reference_m);
         *value = (f64::from(*value) * time / response) as f32;
     }
     out
-}
-
-fn kept_of(simulated: &SimulatedFrame) -> f64 {
-    let truth = &simulated.truth;
-    let pairs = truth.noise_free_amplitude.values().iter().zip(truth.linear_amplitude.values());
-    let mut ratios: Vec<f64> =
-        pairs.map(|(with, without)| f64::from(with / without)).filter(|ratio| ratio.is_finite()).collect();
-    quantile(&mut ratios, 0.05).unwrap_or(f64::NAN)
 }

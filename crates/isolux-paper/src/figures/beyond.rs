@@ -6,6 +6,8 @@ use isolux_report::page::{Block, Cell, Claim, Section, Table};
 use super::parts::{number, text, verdict};
 use crate::beyond::chains;
 use crate::beyond::decay::{self, Decay};
+use crate::beyond::figure::largest;
+use crate::beyond::figures::{DECAY_CV, OVER_FLOOR};
 use crate::beyond::held_out::{CAMERAS, HeldOut};
 use crate::beyond::still::{self, Still, StillScene};
 use crate::error::PaperError;
@@ -49,15 +51,6 @@ pub(super) fn section(_lab: &Lab) -> Result<Section, PaperError> {
 fn ours() -> usize {
     chains::ALL.iter().position(|chain| *chain == chains::FROM_BINS).unwrap_or(0)
 }
-
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() { b } else { a.max(b) })
-}
-
-/// The bound that isolux sets itself for what a calibrated camera leaves of the decay.
-const DECAY_CV: f64 = 0.015;
-/// The bound for the typical pixel beside the noise floor.
-const OVER_FLOOR: f64 = 1.25;
 
 fn decay_claim(measured: &[Measured]) -> Claim {
     let worst = |index: usize| 100.0 * largest(measured.iter().map(|camera| camera.decays[index].cv));

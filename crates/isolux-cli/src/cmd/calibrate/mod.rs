@@ -2,6 +2,7 @@
 
 mod describe;
 mod findings;
+mod linear;
 mod scenes;
 mod targets;
 
@@ -12,7 +13,6 @@ use isolux::calibrate::{
     Measurements, ReferenceDecays, TargetSweep, TargetWindows,
 };
 use isolux::calibration::Terms;
-use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 use isolux::{Calibration, Channels, Frame, Reference};
 
@@ -22,6 +22,7 @@ use crate::failure::{Failure, Outcome};
 use crate::{frames, output};
 
 pub(crate) use describe::describe;
+use linear::Linear;
 
 pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     let inputs = Inputs {
@@ -172,18 +173,13 @@ fn reference_decays(
     cameras: &mut Vec<String>,
 ) -> Outcome<(ReferenceDecays, Option<ReferenceDecays>)> {
     let mut delivered = DistanceSweep::new(path.display().to_string(), settings);
-    let mut linear = delivered.clone();
-    let lineariser = lineariser(path, response)?;
-    let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
-    let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
-    measure(path, "distance sweep", besides, cameras, |frame| {
+    let mut linear_sweep = delivered.clone();
+    let mut linear = Linear::new(path, response)?;
+    measure(path, "distance sweep", linear.channels(), cameras, |frame| {
         delivered.push(frame)?;
-        match &mut lineariser {
-            Some((lineariser, scratch)) => linear.push(linearised(lineariser, frame, scratch)?),
-            None => Ok(()),
-        }
+        if linear.is_possible() { linear_sweep.push(linear.frame(frame)?) } else { Ok(()) }
     })?;
-    Ok((delivered.finish(), lineariser.map(|_| linear.finish())))
+    Ok((delivered.finish(), linear.is_possible().then(|| linear_sweep.finish())))
 }
 
 fn target_windows(
@@ -194,34 +190,14 @@ fn target_windows(
 ) -> Outcome<TargetWindows> {
     let intrinsics = frames::stream(isolux_io::open(path)?.metadata()).intrinsics;
     let mut sweep = TargetSweep::new(path.display().to_string(), settings, intrinsics);
-    let lineariser = lineariser(path, response)?;
-    if lineariser.is_some() {
+    let mut linear = Linear::new(path, response)?;
+    if linear.is_possible() {
         sweep = sweep.of_linear_frames();
     }
-    let besides = lineariser.as_ref().map_or(Channels::empty(), FrameLineariser::channels);
-    let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
-    measure(path, "target", Channels::TARGET | besides, cameras, |frame| match &mut lineariser {
-        Some((lineariser, scratch)) => sweep.push(linearised(lineariser, frame, scratch)?),
-        None => sweep.push(frame),
+    measure(path, "target", Channels::TARGET | linear.channels(), cameras, |frame| {
+        sweep.push(linear.frame(frame)?)
     })?;
     Ok(sweep.finish())
-}
-
-/// What makes the frames of a recording linear, where response and recording allow it.
-fn lineariser(path: &Path, response: Option<&Response>) -> Outcome<Option<FrameLineariser>> {
-    let Some(response) = response else { return Ok(None) };
-    Ok(FrameLineariser::new(response, isolux_io::open(path)?.metadata().available))
-}
-
-/// A linear copy of `frame`.
-fn linearised<'a>(
-    lineariser: &mut FrameLineariser,
-    frame: &Frame,
-    scratch: &'a mut Option<Frame>,
-) -> Result<&'a Frame, CalibrateError> {
-    let copy = scratch.insert(frame.clone());
-    lineariser.linearise(copy)?;
-    Ok(copy)
 }
 
 fn measure(

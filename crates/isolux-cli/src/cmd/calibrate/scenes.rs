@@ -7,11 +7,11 @@ use isolux::calibrate::scene::SceneUse;
 use isolux::calibrate::{
     CalibrateSettings, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep,
 };
-use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 
+use super::RESPONSE_CHANNELS;
 use super::findings::findings;
-use super::{RESPONSE_CHANNELS, linearised, lineariser};
+use super::linear::Linear;
 use crate::console::table;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
@@ -25,10 +25,9 @@ pub(super) fn observations(
 ) -> Outcome<SceneObservations> {
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
-    let lineariser = lineariser(path, response)?;
+    let mut linear = Linear::new(path, response)?;
     // Without a response, a still scene may tell it.
-    let besides = lineariser.as_ref().map_or(RESPONSE_CHANNELS, FrameLineariser::channels);
-    let mut lineariser = lineariser.map(|lineariser| (lineariser, None));
+    let besides = if linear.is_possible() { linear.channels() } else { RESPONSE_CHANNELS };
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::POSE;
     let mut scout = MotionScout::default();
     frames::for_each(&mut *recording, wanted, "scene, first look", |_, frame| {
@@ -38,12 +37,7 @@ pub(super) fn observations(
     let intrinsics = frames::stream(recording.metadata()).intrinsics;
     let mut sweep = SceneSweep::new(path.display().to_string(), settings, intrinsics, scout.verdict());
     frames::for_each(&mut *recording, wanted | besides, "scene", |_, frame| {
-        let pushed = match &mut lineariser {
-            Some((lineariser, scratch)) => {
-                linearised(lineariser, frame, scratch).and_then(|frame| sweep.push(frame))
-            }
-            None => sweep.push(frame),
-        };
+        let pushed = linear.frame(frame).and_then(|frame| sweep.push(frame));
         pushed.map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
     })?;
     Ok(sweep.finish())

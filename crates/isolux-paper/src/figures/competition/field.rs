@@ -1,15 +1,13 @@
 //! The field: identical frames and identical pixels for every competitor.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
-use isolux::statistics::quantile;
-use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer, Window};
-use isolux_camera::Truth;
+use isolux::{Frame, PixelFlags, Plane, Standardized, Standardizer, Window};
 use rayon::prelude::*;
 
 use super::methods::Competitor;
 use crate::error::PaperError;
 use crate::lab::{Lab, WINDOW_PX};
-use crate::measure::{for_each, simulation};
+use crate::measure::{for_each, kept, simulation, time_us};
 
 /// Which frames and pixels enter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,19 +193,4 @@ fn shared_flags(
         }
     }
     Ok((shared, valid))
-}
-
-/// 5 % quantile of the amplitude with saturation over the one without.
-fn kept(truth: &Truth) -> f64 {
-    let pairs = truth.noise_free_amplitude.values().iter().zip(truth.linear_amplitude.values());
-    let mut ratios: Vec<f64> =
-        pairs.map(|(with, without)| f64::from(with / without)).filter(|ratio| ratio.is_finite()).collect();
-    quantile(&mut ratios, 0.05).unwrap_or(f64::NAN)
-}
-
-fn time_us(frame: &Frame) -> Option<f64> {
-    match frame.integration_time_us {
-        IntegrationTime::PerFrame(time_us) => Some(time_us),
-        _ => None,
-    }
 }

@@ -1,0 +1,41 @@
+//! Frames made linear before anything is fitted to them, where response and recording allow it.
+
+use std::path::Path;
+
+use isolux::calibrate::CalibrateError;
+use isolux::standardize::FrameLineariser;
+use isolux::terms::Response;
+use isolux::{Channels, Frame};
+
+use crate::failure::Outcome;
+
+/// What makes the frames of one recording linear, and the last one that it made so.
+pub(super) struct Linear(Option<(FrameLineariser, Frame)>);
+
+impl Linear {
+    pub(super) fn new(path: &Path, response: Option<&Response>) -> Outcome<Self> {
+        let Some(response) = response else { return Ok(Self(None)) };
+        let recording = isolux_io::open(path)?;
+        let metadata = recording.metadata();
+        let lineariser = FrameLineariser::new(response, metadata.available);
+        Ok(Self(lineariser.map(|lineariser| (lineariser, Frame::new(metadata.shape)))))
+    }
+
+    /// Whether frames are made linear at all.
+    pub(super) fn is_possible(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// The channels that it reads besides amplitude and distance.
+    pub(super) fn channels(&self) -> Channels {
+        self.0.as_ref().map_or(Channels::empty(), |(lineariser, _)| lineariser.channels())
+    }
+
+    /// `frame` made linear; as it is where that is not possible.
+    pub(super) fn frame<'a>(&'a mut self, frame: &'a Frame) -> Result<&'a Frame, CalibrateError> {
+        let Some((lineariser, linear)) = &mut self.0 else { return Ok(frame) };
+        linear.clone_from(frame);
+        lineariser.linearise(linear)?;
+        Ok(linear)
+    }
+}
