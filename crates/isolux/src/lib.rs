@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod advice;
 pub mod calibrate;
 pub mod calibration;
 pub mod denoise;
@@ -51,6 +52,7 @@ pub mod standardize;
 pub mod statistics;
 pub mod terms;
 
+pub use advice::{Advice, RecordingKind};
 pub use calibration::{Calibration, Reference};
 pub use denoise::DenoiseRule;
 pub use flags::PixelFlags;
