@@ -10,8 +10,8 @@ use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::noise::AmplitudeNoise;
 use isolux::terms::{NoiseModel, Spline};
 use isolux::{
-    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, Reference, Shape,
-    Standardized, Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Plane, RecordingTraits, Reference,
+    Shape, Standardizer,
 };
 
 const SHAPES: [Shape; 2] = [Shape::new(144, 176), Shape::new(1000, 1000)];
@@ -45,12 +45,13 @@ fn apply(bencher: Bencher, shape: Shape, per_pixel: bool, choice: Choice) {
     let distance = choice.distance.or(Some(DistanceStep::Eq5));
     let choice = Choice { time: Some(TimeStep::Linear), distance, ..choice };
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let traits = RecordingTraits { modulation_frequency_hz: Some(20e6), ..channels.into() };
     let standardizer =
-        Standardizer::plan(&choice, Some(&calibration()), channels).expect("the calibration holds the terms");
-    let (frame, mut out) = (frame(shape, per_pixel), Standardized::new(shape));
+        Standardizer::plan(&choice, Some(&calibration()), traits).expect("the calibration holds the terms");
+    let (frame, mut stream) = (frame(shape, per_pixel), standardizer.stream());
     bencher
         .counter(ItemsCount::new(shape.pixels()))
-        .bench_local(|| standardizer.apply(black_box(&frame), black_box(&mut out)).expect("frame fits"));
+        .bench_local(|| stream.push(black_box(&frame)).expect("frame fits").summary);
 }
 
 /// The spline of a camera with an aliased harmonic at 20 MHz, fitted on positions from 0.3 to 4 m.
@@ -112,7 +113,6 @@ fn predicted(bencher: Bencher, shape: Shape, distance: DistanceStep) {
         distance: Some(distance),
         sigma: SigmaStep::Required,
         noise: Some(NoiseModel { by_amplitude, by_intensity: None }),
-        modulation_frequency_hz: Some(20e6),
         ..Choice::default()
     };
     apply(bencher, shape, false, choice);

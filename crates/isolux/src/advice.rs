@@ -1,7 +1,7 @@
 //! What a user can do about an error or a warning, as data. Whoever shows it words it: the command line as options,
 //! Python as arguments.
 
-use crate::standardize::{DistanceStep, TimeStep};
+use crate::choice::{DistanceStep, TimeStep};
 
 /// The kinds of recordings that a calibration is fitted from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub enum RecordingKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Advice {
+    /// Calibrate the camera.
+    Calibrate,
     /// Calibrate from a recording of this kind.
     CalibrateFrom(RecordingKind),
     /// Take this step for the integration time instead.

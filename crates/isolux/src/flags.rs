@@ -29,6 +29,12 @@ bitflags! {
 }
 
 impl PixelFlags {
+    /// These flags or none, without a branch.
+    #[inline(always)]
+    pub(crate) fn when(self, set: bool) -> Self {
+        Self::from_bits_retain(u16::from(set) * self.bits())
+    }
+
     /// Name and bit position of every flag, as recordings carry them.
     pub fn legend() -> impl Iterator<Item = (&'static str, u32)> {
         Self::all().iter_names().map(|(name, flag)| (name, flag.bits().trailing_zeros()))

@@ -97,6 +97,20 @@ impl Frame {
         self.amplitude.shape()
     }
 
+    /// Bytes that its planes hold.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let Self { distance_m, intensity, vendor_amplitude, vendor_confidence, .. } = self;
+        let optional = [distance_m, intensity, vendor_amplitude, vendor_confidence].into_iter().flatten();
+        let times = match &self.integration_time_us {
+            IntegrationTime::PerPixel(map) => map.bytes(),
+            IntegrationTime::PerFrame(_) | IntegrationTime::Unknown => 0,
+        };
+        let images = optional.chain(self.phase_samples.iter().flatten()).map(Plane::bytes);
+        let labels = self.target.as_ref().map_or(0, Plane::bytes);
+        self.amplitude.bytes() + self.flags.bytes() + times + labels + images.sum::<usize>()
+    }
+
     /// Marks what is not a measurement: amplitudes that are not finite and positive become INVALID, and those
     /// that reach `saturated_amplitude` (the camera's code, where it has one) SATURATED and INVALID. Flags that
     /// the reader has already set are kept.

@@ -6,11 +6,11 @@
 //! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`]. [`denoise`] smooths the distance
 //! before it scales.
 //!
-//! [`calibrate`] fits a [`Calibration`] from sweeps; a [`Standardizer`] is planned once and applied to each
-//! [`Frame`]; [`evaluate`] tells how much better it is. This crate knows no files and starts no threads.
+//! [`calibrate`] fits a [`Calibration`] from sweeps; a [`Standardizer`] is planned once, and its
+//! [`Stream`] takes each [`Frame`]; [`evaluate`] tells how much better it is. This crate knows no files and starts no threads.
 //!
 //! ```
-//! use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardized, Standardizer};
+//! use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardizer};
 //!
 //! let shape = Shape::new(2, 2);
 //! let mut frame = Frame::new(shape);
@@ -22,9 +22,9 @@
 //! // Without a calibration, the steps are textbook physics: t_ref / t and (d / d_ref)².
 //! let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
 //! let standardizer = Standardizer::plan(&Choice::default(), None, channels)?;
-//! let mut out = Standardized::new(shape);
-//! let summary = standardizer.apply(&frame, &mut out)?;
-//! assert_eq!(summary.valid, 3);
+//! let mut stream = standardizer.stream();
+//! let out = stream.push(&frame)?;
+//! assert_eq!(out.summary.valid, 3);
 //! assert_eq!(out.amplitude.get(0, 0), out.amplitude.get(0, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -32,6 +32,7 @@
 pub mod advice;
 pub mod calibrate;
 pub mod calibration;
+mod choice;
 pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
@@ -40,6 +41,7 @@ pub mod frame;
 pub mod geometry;
 mod hash;
 pub mod motion;
+pub mod names;
 mod noise;
 mod normals;
 pub mod phase;
@@ -54,6 +56,7 @@ pub mod terms;
 
 pub use advice::{Advice, RecordingKind};
 pub use calibration::{Calibration, Reference};
+pub use choice::Choice;
 pub use denoise::DenoiseRule;
 pub use flags::PixelFlags;
 pub use frame::{Channels, Frame, IntegrationTime};
@@ -61,4 +64,4 @@ pub use geometry::Intrinsics;
 pub use phase::PhaseConvention;
 pub use plane::{Plane, Shape, ShapeError, Window};
 pub use specular::SpecularRule;
-pub use standardize::{Choice, Standardized, Standardizer};
+pub use standardize::{RecordingTraits, Standardized, Standardizer, Stream};

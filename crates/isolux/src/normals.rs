@@ -10,7 +10,7 @@
 use crate::denoise::{DenoiseRule, Denoiser};
 use crate::frame::Frame;
 use crate::geometry::Intrinsics;
-use crate::plane::{Plane, Shape};
+use crate::plane::{Plane, Shape, bytes};
 
 /// Samples to either side of the middle one.
 const REACH: i64 = 4;
@@ -48,6 +48,11 @@ pub(crate) struct Incidence {
 }
 
 impl Incidence {
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        self.denoiser.bytes() + self.normals.bytes()
+    }
+
     /// Takes the next frame, seen at `distance_m` (m, radial). Allocates only when the shape differs from that of the
     /// last frame.
     pub(crate) fn take(&mut self, frame: &Frame, distance_m: &Plane<f32>, intrinsics: &Intrinsics) {
@@ -101,6 +106,10 @@ impl Facet {
 }
 
 impl Normals {
+    fn bytes(&self) -> usize {
+        [&self.inverse_depth, &self.noise, &self.cosines].map(bytes).iter().sum()
+    }
+
     /// `distance_m` are denoised radial distances (m), NaN or not positive where there are none; before that, they had
     /// the standard deviation `deviation / amplitude`.
     fn take(&mut self, frame: &Frame, intrinsics: &Intrinsics, distance_m: &[f32], deviation: f64) {

@@ -62,6 +62,11 @@ pub struct Plane<T> {
     values: Vec<T>,
 }
 
+/// Bytes that a vector holds.
+pub(crate) fn bytes<T>(values: &Vec<T>) -> usize {
+    values.capacity() * size_of::<T>()
+}
+
 impl<T: Copy> Plane<T> {
     /// A plane with every pixel set to `value`.
     #[must_use]
@@ -88,6 +93,12 @@ impl<T: Copy> Plane<T> {
             values.extend((0..shape.width).map(|column| value(row, column)));
         }
         Self { shape, values }
+    }
+
+    /// Bytes that it holds.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        bytes(&self.values)
     }
 
     /// Height and width.

@@ -1,11 +1,14 @@
 //! Exact order statistics of positive f32 values by counting, without sorting the image or allocating for each.
 
+use crate::plane::bytes;
+
 /// Positive floats order like their bits. The upper 16 (the sign is 0) choose a bin of under 1 % width, so that few
 /// values share the bin of a quantile and only these need to be sorted out.
 const BINS: usize = 1 << 15;
 
 /// Working memory for order statistics, kept between images.
-#[derive(Clone, Debug)]
+/// Empty until it is used.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct PositiveQuantiles {
     bins: Vec<u32>,
     /// Bits of the values that share the bin of a wanted quantile.
@@ -13,8 +16,9 @@ pub(crate) struct PositiveQuantiles {
 }
 
 impl PositiveQuantiles {
-    pub(crate) fn new() -> Self {
-        Self { bins: vec![0; BINS], candidates: Vec::new() }
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        bytes(&self.bins) + bytes(&self.candidates)
     }
 
     /// Makes room for images of `pixels`, so that no image allocates, however its values lie.
@@ -39,7 +43,8 @@ impl PositiveQuantiles {
     }
 
     fn count(&mut self, values: &[f32]) -> usize {
-        self.bins.fill(0);
+        self.bins.clear();
+        self.bins.resize(BINS, 0);
         let mut count = 0;
         for &value in values {
             if is_positive(value) {
@@ -102,7 +107,7 @@ mod tests {
             sorted.sort_by(f32::total_cmp);
             let at = |fraction: f64| sorted[(fraction * (sorted.len() - 1) as f64) as usize];
             let expected = (!sorted.is_empty()).then(|| ([at(first), at(second)], sorted.len()));
-            prop_assert_eq!(PositiveQuantiles::new().at(&values, [first, second]), expected);
+            prop_assert_eq!(PositiveQuantiles::default().at(&values, [first, second]), expected);
         }
     }
 }

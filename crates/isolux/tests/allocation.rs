@@ -4,31 +4,36 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use isolux::specular::{KneeRule, PercentRule, SigmaRule};
-use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, SigmaStep, SpecularStep, Stream, TimeStep};
+use isolux::standardize::{
+    AngleStep, DenoiseStep, DistanceStep, Prepared, SigmaStep, SpecularStep, TimeStep, Workspace,
+};
 use isolux::terms::noise::AmplitudeNoise;
 use isolux::terms::response::ResponseTier;
 use isolux::terms::{FitQuality, NoiseModel, Profile};
 use isolux::{
-    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Intrinsics, Plane, Reference, Shape,
-    SpecularRule, Standardized, Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Intrinsics, Plane, RecordingTraits,
+    Reference, Shape, SpecularRule, Standardized, Standardizer,
 };
 
-/// Counts the allocations of each thread.
+/// Counts the allocations of each thread, and the bytes that are in use.
 struct Counting;
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+    static BYTES: Cell<isize> = const { Cell::new(0) };
 }
 
 // SAFETY: every call is handed on to the system's allocator unchanged; counting allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        BYTES.with(|bytes| bytes.set(bytes.get() + layout.size() as isize));
         // SAFETY: the caller's promises are those that `System` asks for.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        BYTES.with(|bytes| bytes.set(bytes.get() - layout.size() as isize));
         // SAFETY: as above.
         unsafe { System.dealloc(pointer, layout) }
     }
@@ -64,11 +69,11 @@ fn nothing_is_allocated_per_frame() {
         let frames: Vec<Frame> = [(900, false), (0, false), (3, true), (5000, false), (0, true)]
             .map(|(spread, per_pixel)| frame(shape, spread, per_pixel))
             .into();
-        let mut out = Standardized::new(shape);
-        standardizer.apply(&frames[0], &mut out).unwrap();
+        let mut stream = standardizer.stream();
+        stream.push(&frames[0]).unwrap();
         let before = ALLOCATIONS.get();
         for frame in &frames {
-            standardizer.apply(frame, &mut out).unwrap();
+            stream.push(frame).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{specular:?}");
     }
@@ -89,10 +94,11 @@ fn nothing_is_allocated_per_predicted_frame() {
     for modulation_frequency_hz in [Some(20e6), None] {
         for denoise in [None, Some(DenoiseStep::Smooth(DenoiseRule::Wiener))] {
             let sigma = SigmaStep::Required;
-            let choice = Choice { denoise, sigma, noise, modulation_frequency_hz, ..Choice::default() };
-            let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
+            let choice = Choice { denoise, sigma, noise, ..Choice::default() };
+            let traits = RecordingTraits { modulation_frequency_hz, ..channels.into() };
+            let standardizer = Standardizer::plan(&choice, None, traits).unwrap();
             let (single, mut merge) = standardizer.bracket().unwrap();
-            let (mut out, mut merged) = (Standardized::new(shape), Standardized::new(shape));
+            let (mut stream, mut merged) = (single.stream(), Standardized::new(shape));
             let mut before = 0;
             for round in 0..3 {
                 // The first bracket makes the memory of all.
@@ -100,8 +106,7 @@ fn nothing_is_allocated_per_predicted_frame() {
                     before = ALLOCATIONS.get();
                 }
                 for frame in &frames {
-                    single.apply(frame, &mut out).unwrap();
-                    merge.push(&out).unwrap();
+                    merge.push(stream.push(frame).unwrap()).unwrap();
                 }
                 merge.finish(&mut merged);
             }
@@ -120,25 +125,55 @@ fn nothing_is_allocated_per_denoised_frame() {
     for rule in [DenoiseRule::Median, DenoiseRule::Wiener, DenoiseRule::Plane, DenoiseRule::Temporal] {
         let choice = Choice { denoise: Some(DenoiseStep::Smooth(rule)), ..Choice::default() };
         let standardizer = Standardizer::plan(&choice, None, channels).unwrap();
-        let (mut history, mut out) = (standardizer.history(), Standardized::new(shape));
-        let mut smoothed = Plane::filled(shape, f32::NAN);
+        // Both forms: in one go, and in two steps for threads.
+        let (mut stream, mut in_order) = (standardizer.stream(), standardizer.stream());
+        let (mut prepared, mut workspace) = (Prepared::default(), Workspace::default());
+        let mut out = Standardized::new(shape);
         let mut before = 0;
         for index in 0..20 {
             // The history fills for eight frames.
             if index == 8 {
                 before = ALLOCATIONS.get();
             }
-            match &mut history {
-                Some(history) => {
-                    history.push(&frame, &mut smoothed).unwrap();
-                    standardizer.apply_at(&frame, &smoothed, &mut out).unwrap();
-                }
-                None => {
-                    standardizer.apply(&frame, &mut out).unwrap();
-                }
-            }
+            in_order.prepare(&frame, &mut prepared).unwrap();
+            standardizer.apply(&frame, &prepared, &mut workspace, &mut out).unwrap();
+            assert!(stream.push(&frame).unwrap().amplitude.get(0, 0) == out.amplitude.get(0, 0));
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{rule:?}");
+    }
+}
+
+#[test]
+fn a_stream_tells_the_bytes_that_it_holds() {
+    let noise = Some(NoiseModel {
+        by_amplitude: AmplitudeNoise { read_variance_dn2: 4.0, ..AmplitudeNoise::default() },
+        by_intensity: None,
+    });
+    let shape = Shape::new(48, 64);
+    let frame = frame(shape, 900, true);
+    let traits = RecordingTraits {
+        channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
+        shape: Some(shape),
+        intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
+        modulation_frequency_hz: None,
+    };
+    for rule in DenoiseRule::ALL {
+        let choice = Choice {
+            denoise: Some(DenoiseStep::Smooth(*rule)),
+            angle: Some(AngleStep::On),
+            sigma: SigmaStep::Required,
+            noise,
+            ..Choice::default()
+        };
+        let standardizer = Standardizer::plan(&choice, None, traits).unwrap();
+        let before = BYTES.get();
+        let mut stream = standardizer.stream();
+        for _ in 0..2 * isolux::denoise::TemporalMean::FRAMES {
+            stream.push(&frame).unwrap();
+        }
+        // Lists of vectors and the like are not counted.
+        let uncounted = usize::try_from(BYTES.get() - before).unwrap().checked_sub(stream.bytes());
+        assert!(uncounted.is_some_and(|bytes| bytes < 1024), "{rule}: {uncounted:?} of {}", stream.bytes());
     }
 }
 
@@ -146,10 +181,11 @@ fn nothing_is_allocated_per_denoised_frame() {
 fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     let shape = Shape::new(48, 64);
     let intrinsics = Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 };
-    let stream = Stream {
+    let traits = RecordingTraits {
         channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
         shape: Some(shape),
         intrinsics: Some(intrinsics),
+        modulation_frequency_hz: None,
     };
     let profile = Profile {
         version: 1,
@@ -166,13 +202,13 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     let mut calibration = Calibration::new(None, Reference::default());
     calibration.terms.profile = Some(profile);
     let choice = Choice { angle: Some(AngleStep::On), ..Choice::default() };
-    let standardizer = Standardizer::plan_for(&choice, Some(&calibration), stream).unwrap();
+    let standardizer = Standardizer::plan(&choice, Some(&calibration), traits).unwrap();
     let frames: Vec<Frame> = [(900, false), (0, true)].map(|(spread, map)| frame(shape, spread, map)).into();
-    let mut out = Standardized::new(shape);
-    standardizer.apply(&frames[0], &mut out).unwrap();
+    let mut stream = standardizer.stream();
+    stream.push(&frames[0]).unwrap();
     let before = ALLOCATIONS.get();
     for frame in &frames {
-        standardizer.apply(frame, &mut out).unwrap();
+        stream.push(frame).unwrap();
     }
     assert_eq!(ALLOCATIONS.get() - before, 0);
 }
@@ -197,10 +233,10 @@ fn nothing_is_allocated_per_linearised_frame() {
         let choice = Choice { time, response_tier: Some(tier), ..Choice::default() };
         let choice = Choice { distance: Some(DistanceStep::Square), ..choice };
         let standardizer = Standardizer::plan(&choice, Some(&calibration), channels).unwrap();
-        let mut out = Standardized::new(shape);
-        standardizer.apply(&frame, &mut out).unwrap();
+        let mut stream = standardizer.stream();
+        stream.push(&frame).unwrap();
         let before = ALLOCATIONS.get();
-        let summary = standardizer.apply(&frame, &mut out).unwrap();
+        let summary = stream.push(&frame).unwrap().summary;
         assert_eq!(ALLOCATIONS.get() - before, 0, "{tier:?}");
         assert!(0 < summary.valid && summary.valid <= summary.pixels, "{tier:?} {summary:?}");
     }

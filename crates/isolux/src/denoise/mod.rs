@@ -24,36 +24,27 @@ pub use temporal::TemporalMean;
 
 use crate::flags::PixelFlags;
 use crate::frame::Frame;
-use crate::plane::{Plane, Shape};
+use crate::names::named;
+use crate::plane::{Plane, Shape, bytes};
 use noise::NoiseScale;
 use wiener::Wiener;
 
-/// How the distance is denoised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum DenoiseRule {
-    /// Median of the valid distances of 3×3 pixels.
-    Median,
-    /// Variance-weighted local Wiener filter of 5×5 pixels.
-    Wiener,
-    /// Plane fits in 7×7 pixels to the surface of the middle one.
-    Plane,
-    /// Mean of the last frames of a still scene.
-    Temporal,
+named! {
+    /// How the distance is denoised.
+    #[non_exhaustive]
+    pub enum DenoiseRule: "denoising rule" {
+        /// Median of the valid distances of 3×3 pixels.
+        Median = "median",
+        /// Variance-weighted local Wiener filter of 5×5 pixels: the fast one.
+        Wiener = "wiener",
+        /// Plane fits in 7×7 pixels: for slanted surfaces and quality.
+        Plane = "plane",
+        /// Mean of the last 8 frames, for still scenes.
+        Temporal = "temporal",
+    }
 }
 
 impl DenoiseRule {
-    /// Name on the command line and in recordings.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Median => "median",
-            Self::Wiener => "wiener",
-            Self::Plane => "plane",
-            Self::Temporal => "temporal",
-        }
-    }
-
     /// The rule's parameters in words, for the record of applied steps.
     #[must_use]
     pub fn parameters(self) -> String {
@@ -99,6 +90,12 @@ pub(crate) struct Denoised<'a> {
 }
 
 impl Denoiser {
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        let planes = [&self.measured_m, &self.denoised_m, &self.variance_left].map(bytes);
+        planes.iter().sum::<usize>() + self.noise.bytes() + self.wiener.bytes() + self.guide.bytes()
+    }
+
     /// σ_d in m of a pixel of signal-to-noise ratio 1, which falls as 1/ratio; 0 where the frame does not tell it.
     /// `snr` holds the ratio of each pixel.
     pub(crate) fn unit_noise_m(&mut self, frame: &Frame, distance_m: &Plane<f32>, snr: &[f32]) -> f64 {

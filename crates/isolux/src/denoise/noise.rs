@@ -5,6 +5,7 @@
 //! every edge along a row or column, and the median of its magnitude passes over the others.
 
 use super::Image;
+use crate::plane::bytes;
 
 /// Positive f32 order like their bits; the upper 13 (the sign is 0) make bins of at most 3 % width.
 const BINS: usize = 1 << 13;
@@ -23,6 +24,10 @@ pub(super) struct NoiseScale {
 }
 
 impl NoiseScale {
+    pub(super) fn bytes(&self) -> usize {
+        bytes(&self.bins)
+    }
+
     /// `k` in m² DN²; 0 where the frame tells no noise, so that nothing is denoised.
     pub(super) fn estimate(&mut self, image: Image<'_>) -> f64 {
         self.bins.clear();

@@ -9,6 +9,7 @@
 
 use super::Image;
 use super::wiener::Wiener;
+use crate::plane::bytes;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 3;
@@ -41,6 +42,10 @@ struct Surface {
 }
 
 impl Guide {
+    pub(super) fn bytes(&self) -> usize {
+        bytes(&self.distance_m) + bytes(&self.detail)
+    }
+
     /// Writes the denoised distances, NaN where the pixel takes no part, and into `left` the share of each pixel's
     /// variance that is left.
     pub(super) fn denoise(

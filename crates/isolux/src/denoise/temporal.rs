@@ -2,7 +2,7 @@
 
 use super::measured;
 use crate::frame::Frame;
-use crate::plane::{Plane, Shape};
+use crate::plane::{Plane, Shape, bytes};
 use crate::standardize::StandardizeError;
 
 /// The last frames of a stream, and the mean of their distances, weighted by `1/σ_d² ∝ a²`: frames of several
@@ -36,13 +36,18 @@ impl TemporalMean {
         Self { shape: Shape::new(0, 0), frames, next: 0, count: 0 }
     }
 
+    /// Bytes that it holds.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.frames.iter().flatten().map(bytes).sum()
+    }
+
     /// Forgets all frames: the next one begins another scene.
     pub fn reset(&mut self) {
         (self.next, self.count) = (0, 0);
     }
 
-    /// Takes the next frame and writes into `out` the mean over it and those before it, for
-    /// [`crate::Standardizer::apply_at`]; pixels that are not valid in this frame keep what it has there. Allocates
+    /// Takes the next frame and writes into `out` the mean over it and those before it; pixels that are not valid in this frame keep what it has there. Allocates
     /// only when the shape changes.
     ///
     /// # Errors

@@ -12,6 +12,7 @@
 //! With `σ_d² = k/a²`, the weights are `a²/k`, and `n² = k N / Σa²`.
 
 use super::Image;
+use crate::plane::bytes;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 2;
@@ -38,6 +39,10 @@ pub(super) struct Wiener {
 }
 
 impl Wiener {
+    pub(super) fn bytes(&self) -> usize {
+        self.moments.bytes() + self.answers.bytes()
+    }
+
     /// Writes the denoised distances, NaN where the pixel takes no part, and into `detail` the mean α of each pixel
     /// that does. Without noise (`k` = 0) everything is detail.
     pub(super) fn denoise(
@@ -100,6 +105,11 @@ impl<const Q: usize> Default for BoxSums<Q> {
 }
 
 impl<const Q: usize> BoxSums<Q> {
+    fn bytes(&self) -> usize {
+        let rows = self.rows.iter().flatten().chain(&self.sums);
+        rows.map(bytes).sum::<usize>() + bytes(&self.columns)
+    }
+
     /// Forgets all rows.
     fn start(&mut self, width: usize) {
         let padded = width + 2 * RADIUS;

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     fn cutoff(rule: HistogramRule, values: &[f32]) -> Option<f32> {
-        rule.cutoff(values, &mut PositiveQuantiles::new())
+        rule.cutoff(values, &mut PositiveQuantiles::default())
     }
 
     /// 10 000 values spread evenly over 50..150.

@@ -2,11 +2,13 @@
 
 mod histogram;
 mod knee;
+mod notation;
 mod percent;
 mod sigma;
 
 pub use histogram::HistogramRule;
 pub use knee::KneeRule;
+pub use notation::RuleError;
 pub use percent::PercentRule;
 pub use sigma::SigmaRule;
 

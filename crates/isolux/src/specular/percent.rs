@@ -44,7 +44,7 @@ mod tests {
     #[test]
     fn both_readings_of_the_paper() {
         let values: Vec<f32> = (1..=11).map(|i| (i * i) as f32).collect();
-        let mut memory = PositiveQuantiles::new();
+        let mut memory = PositiveQuantiles::default();
         assert_eq!(PercentRule::OfMaximum(0.5).cutoff(&values, &mut memory), Some(60.5));
         assert_eq!(PercentRule::Quantile(0.9).cutoff(&values, &mut memory), Some(100.0));
         assert_eq!(PercentRule::OfMaximum(0.5).cutoff(&[f32::NAN, 0.0], &mut memory), None);

@@ -12,8 +12,8 @@ pub(super) struct Block<'a> {
     pub(super) amplitude: &'a [f32],
     /// 1 everywhere where the distance is left in.
     pub(super) distance_m: &'a [f32],
-    /// Multiplier of the integration time; NaN where there is none.
-    pub(super) time_gain: &'a [f32],
+    /// Product of all multipliers but the distance's polynomial; NaN where one is not known.
+    pub(super) gain: &'a [f32],
 }
 
 /// Applies the multipliers and completes the flags: `flags` holds what is known before, `out` is overwritten.
@@ -23,34 +23,28 @@ pub(super) struct Block<'a> {
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
 pub(super) fn pointwise(
     block: Block<'_>,
-    distance: &DistanceGain,
+    law: &DistanceGain,
     low_signal_below_dn: f32,
     out: &mut [f32],
     flags: &mut [PixelFlags],
 ) {
     let count = out.len();
-    let (amplitude, distance_m, time_gain) =
-        (&block.amplitude[..count], &block.distance_m[..count], &block.time_gain[..count]);
+    let (amplitude, distance_m, gain) =
+        (&block.amplitude[..count], &block.distance_m[..count], &block.gain[..count]);
     let flags = &mut flags[..count];
     for i in 0..count {
         let (a, d) = (amplitude[i], distance_m[i]);
-        let value = a * time_gain[i] * distance.at(d);
+        let value = a * gain[i] * law.at(d);
         let measured = d > 0.0 && value > 0.0 && value < f32::INFINITY;
         let invalid = !measured | flags[i].contains(PixelFlags::INVALID);
-        let outside = measured & ((d < distance.min_m) | (d > distance.max_m));
+        let outside = measured & ((d < law.min_m) | (d > law.max_m));
         let low = a < low_signal_below_dn;
         out[i] = if invalid { f32::NAN } else { value };
-        flags[i] = flags[i].difference(when(invalid, PixelFlags::ILLUMINATION_OUT_OF_RANGE))
-            | when(invalid, PixelFlags::INVALID)
-            | when(outside, PixelFlags::DISTANCE_OUT_OF_RANGE)
-            | when(low & !invalid, PixelFlags::LOW_SIGNAL);
+        flags[i] = flags[i].difference(PixelFlags::ILLUMINATION_OUT_OF_RANGE.when(invalid))
+            | PixelFlags::INVALID.when(invalid)
+            | PixelFlags::DISTANCE_OUT_OF_RANGE.when(outside)
+            | PixelFlags::LOW_SIGNAL.when(low & !invalid);
     }
-}
-
-/// The flag or none, without a branch.
-#[inline(always)]
-pub(super) fn when(set: bool, flag: PixelFlags) -> PixelFlags {
-    PixelFlags::from_bits_retain(u16::from(set) * flag.bits())
 }
 
 /// What [`tally`] counts: pixels with each of these flags.
@@ -114,10 +108,10 @@ mod tests {
             let tolerance = 16.0 * f64::from(f32::EPSILON);
             let law = DistanceGain::between([0.1, 0.2, 1.5, 0.01], 0.5, 4.0);
             let column = |pick: fn(&(f32, f32, f32, u16)) -> f32| pixels.iter().map(pick).collect::<Vec<f32>>();
-            let (amplitude, distance_m, time_gain) = (column(|p| p.0), column(|p| p.1), column(|p| p.2));
+            let (amplitude, distance_m, gain) = (column(|p| p.0), column(|p| p.1), column(|p| p.2));
             let mut flags: Vec<_> = pixels.iter().map(|p| PixelFlags::from_bits_retain(p.3)).collect();
             let mut out = vec![0.0; pixels.len()];
-            let block = Block { amplitude: &amplitude, distance_m: &distance_m, time_gain: &time_gain };
+            let block = Block { amplitude: &amplitude, distance_m: &distance_m, gain: &gain };
             pointwise(block, &law, 0.0, &mut out, &mut flags);
             for (i, &(a, d, gain, known)) in pixels.iter().enumerate() {
                 let (value, expected) = oracle(a, d, gain, &law, known);

@@ -7,9 +7,12 @@
 //! frames of a pixel disagree by more than one chance in a thousand allows (something moved, or a term does not fit),
 //! the value remains their weighted mean, and its σ grows by the ratio of Birge: `√(χ²/(n − 1))`.
 
-use super::{FrameSummary, Standardized, Standardizer, count};
+use super::standardized::{FrameSummary, Standardized};
+use super::standardizer::Standardizer;
+use super::steps::specular;
 use crate::flags::PixelFlags;
-use crate::plane::{Shape, ShapeError};
+use crate::plane::{Shape, ShapeError, bytes};
+use crate::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
 
 /// Standard deviations of a normal law that one chance in a thousand is beyond.
@@ -23,6 +26,7 @@ pub struct BracketMerge {
     shape: Shape,
     pixels: Vec<MergedPixel>,
     variance: Vec<f32>,
+    quantiles: PositiveQuantiles,
 }
 
 /// Why a frame cannot be merged.
@@ -65,18 +69,22 @@ impl Standardizer {
         if !self.predicts_sigma() {
             return Err(MergeError::NoSigma);
         }
-        let mut frames = self.clone();
-        let specular = frames.plan.specular.take();
-        Ok((
-            frames,
-            BracketMerge { specular, shape: Shape::new(0, 0), pixels: Vec::new(), variance: Vec::new() },
-        ))
+        let (frames, specular) = self.without_highlights();
+        Ok((frames, BracketMerge::new(specular)))
     }
 }
 
 impl BracketMerge {
-    /// Bytes that each pixel takes.
-    pub const BYTES_PER_PIXEL: usize = size_of::<MergedPixel>() + size_of::<f32>();
+    fn new(specular: Option<SpecularRule>) -> Self {
+        let quantiles = PositiveQuantiles::default();
+        Self { specular, shape: Shape::new(0, 0), pixels: Vec::new(), variance: Vec::new(), quantiles }
+    }
+
+    /// Bytes that it holds, known after the first frame.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        bytes(&self.pixels) + bytes(&self.variance) + self.quantiles.bytes()
+    }
 
     /// Takes the next frame of the bracket.
     ///
@@ -104,18 +112,18 @@ impl BracketMerge {
 
     /// Ends the bracket and writes the merged frame; the next push begins another. A pixel is INVALID where it was in
     /// every frame, LOW_SIGNAL where all that count are, and has the other flags of all that count.
-    pub fn finish(&mut self, out: &mut Standardized) -> FrameSummary {
-        out.reshape(self.shape);
+    pub fn finish(&mut self, out: &mut Standardized) {
+        out.reshape(self.shape, true);
         self.pixels.resize(self.shape.pixels(), MergedPixel::default());
-        let sigma = super::sigma::plane(&mut out.sigma, self.shape);
-        let planes =
-            out.amplitude.values_mut().iter_mut().zip(sigma.values_mut()).zip(out.flags.values_mut());
+        let sigma = out.sigma.iter_mut().flat_map(|sigma| sigma.values_mut());
+        let planes = out.amplitude.values_mut().iter_mut().zip(sigma).zip(out.flags.values_mut());
         for (((value, sigma), flags), pixel) in planes.zip(&self.pixels) {
             (*value, *sigma, *flags) = pixel.finish();
         }
         self.pixels.clear();
-        let specular_cutoff = self.specular.and_then(|rule| out.limit(rule));
-        FrameSummary { specular_cutoff, ..count(out) }
+        let rule = self.specular;
+        let specular_cutoff = rule.and_then(|rule| specular::limit(rule, out, &mut self.quantiles));
+        out.summary = FrameSummary { specular_cutoff, ..FrameSummary::of(out.flags.values()) };
     }
 }
 
@@ -201,9 +209,8 @@ mod tests {
     }
 
     fn merge(frames: &[Standardized]) -> Standardized {
-        let (shape, specular) = (Shape::new(0, 0), None);
-        let mut merge = BracketMerge { specular, shape, pixels: Vec::new(), variance: Vec::new() };
-        let mut out = Standardized::new(shape);
+        let mut merge = BracketMerge::new(None);
+        let mut out = Standardized::new(Shape::new(0, 0));
         // Twice: nothing of a bracket remains for the next.
         for _ in 0..2 {
             frames.iter().for_each(|frame| merge.push(frame).unwrap());
@@ -273,8 +280,7 @@ mod tests {
 
     #[test]
     fn frames_without_sigma_or_of_another_shape_are_refused() {
-        let (shape, specular) = (Shape::new(0, 0), None);
-        let mut merge = BracketMerge { specular, shape, pixels: Vec::new(), variance: Vec::new() };
+        let mut merge = BracketMerge::new(None);
         assert_eq!(merge.push(&Standardized::new(Shape::new(1, 1))), Err(MergeError::NoSigma));
         merge.push(&frame(&[(1.0, 1.0, CLEAN)])).unwrap();
         assert!(matches!(merge.push(&frame(&[(1.0, 1.0, CLEAN); 2])), Err(MergeError::Shape(_))));

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::advice::{Advice, RecordingKind};
+use crate::choice::{DistanceStep, TimeStep};
 use crate::plane::Shape;
 
 /// One step of the chain, as the output's record tells it.
@@ -25,13 +27,10 @@ pub enum Note {
         /// The terms that are used.
         terms: String,
     },
-    /// `best` goes without a term that the calibration lacks.
-    TermMissing {
-        /// The term.
-        term: &'static str,
-        /// What can be done about it.
-        instead: &'static str,
-    },
+    /// `best` goes without the step for the integration time, for which the calibration has no term.
+    NoTimeTerm,
+    /// `best` goes without the step for the distance, for which the calibration has no term.
+    NoDistanceTerm,
     /// A step is left out because the recording lacks its channel.
     ChannelMissing {
         /// The effect that stays in.
@@ -54,17 +53,31 @@ pub enum Note {
     Lambert,
 }
 
+impl Note {
+    /// What can be done about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Textbook { .. } => Some(Advice::Calibrate),
+            Self::NoTimeTerm => Some(Advice::UseTimeStep(TimeStep::Linear)),
+            Self::NoDistanceTerm => Some(Advice::UseDistanceStep(DistanceStep::Square)),
+            Self::Lambert => Some(Advice::CalibrateFrom(RecordingKind::Target)),
+            Self::FrequencyUnknown => Some(Advice::GiveModulationFrequency),
+            Self::ChannelMissing { .. } | Self::NothingToDenoise | Self::ProfileFormat { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Textbook { terms } => write!(
                 f,
-                "no calibration given: {terms} is textbook physics, not this camera. `isolux calibrate` measures its \
+                "no calibration given: {terms} is textbook physics, not this camera. A calibration holds its \
                  saturation and its own distance law"
             ),
-            Self::TermMissing { term, instead } => {
-                write!(f, "the calibration has no `{term}`: this step is left out. {instead}")
-            }
+            Self::NoTimeTerm => f.write_str("the calibration has no `lut`: this step is left out"),
+            Self::NoDistanceTerm => f.write_str("the calibration has no `cubic`: this step is left out"),
             Self::ChannelMissing { effect, channel } => {
                 write!(f, "the recording has no {channel}: the {effect} step is left out")
             }
@@ -80,8 +93,7 @@ impl fmt::Display for Note {
                 "the frames are {found}, the calibration's `profile` is for {expected}: this step is left out"
             ),
             Self::Lambert => f.write_str(
-                "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets. `isolux \
-                 calibrate --target REC` measures it",
+                "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets",
             ),
         }
     }
@@ -91,17 +103,21 @@ impl fmt::Display for Note {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// A term asked for by name is not there.
-    #[error(
-        "`{term}` was asked for, but {holder}: fit it with `isolux calibrate {fit_with} REC`, or choose another step"
-    )]
+    /// A term asked for by name is not in the calibration.
+    #[error("`{term}` was asked for, but the calibration does not hold it")]
     TermMissing {
         /// The term.
         term: &'static str,
-        /// Who lacks it.
-        holder: &'static str,
-        /// Option of `isolux calibrate` that fits it.
-        fit_with: &'static str,
+        /// What it is fitted from.
+        fit_from: RecordingKind,
+    },
+    /// A term asked for by name needs a calibration.
+    #[error("`{term}` was asked for, but no calibration is given")]
+    CalibrationMissing {
+        /// The term.
+        term: &'static str,
+        /// What it is fitted from.
+        fit_from: RecordingKind,
     },
     /// A step asked for by name needs a channel that the recording lacks.
     #[error("`{term}` was asked for, but the recording has no {channel}")]
@@ -112,10 +128,7 @@ pub enum PlanError {
         channel: &'static str,
     },
     /// A prediction of the standard deviation without the noise of the amplitude.
-    #[error(
-        "`sigma` was asked for, but the noise of the amplitude is not known: give it (--read-noise-dn, \
-         --shot-noise-dn2-per-dn), or fit it with `isolux calibrate --exposure-sweep REC`, several frames at each time"
-    )]
+    #[error("`sigma` was asked for, but the noise of the amplitude is not known")]
     NoiseUnknown,
     /// The profile asked for is that of another image format.
     #[error(
@@ -128,12 +141,24 @@ pub enum PlanError {
         expected: Shape,
     },
     /// No rays, no angles.
-    #[error(
-        "`angle` was asked for, but the recording has no intrinsics: write {{\"intrinsics\": {{\"fx\": .., \"fy\": .., \
-         \"cx\": .., \"cy\": ..}}}} (pixels) into its recording.json"
-    )]
+    #[error("`angle` was asked for, but the recording has no intrinsics")]
     IntrinsicsMissing,
     /// The calibration's own values are impossible.
     #[error("calibration: {0}")]
     Calibration(#[from] crate::terms::ParameterError),
+}
+
+impl PlanError {
+    /// What can be done about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::TermMissing { fit_from, .. } | Self::CalibrationMissing { fit_from, .. } => {
+                Some(Advice::CalibrateFrom(*fit_from))
+            }
+            Self::NoiseUnknown => Some(Advice::GiveNoise),
+            Self::IntrinsicsMissing => Some(Advice::GiveIntrinsics),
+            Self::ChannelMissing { .. } | Self::ProfileFormat { .. } | Self::Calibration(_) => None,
+        }
+    }
 }

@@ -4,7 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::polynomial::{distinct, evaluate, fit_relative};
-use super::{DistanceGain, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require, root_mean_square};
+use super::{
+    DistanceGain, DistanceLaw, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require,
+    root_mean_square,
+};
 
 /// Amplitude and distance of the flat target at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,8 +156,8 @@ impl Cubic {
 
     /// The multiplier in the form that the hot loop evaluates.
     #[must_use]
-    pub fn gain(&self) -> DistanceGain {
-        DistanceGain::between(self.coefficients, self.valid_distance_m[0], self.valid_distance_m[1])
+    pub fn distance_law(&self) -> DistanceLaw {
+        DistanceGain::between(self.coefficients, self.valid_distance_m[0], self.valid_distance_m[1]).into()
     }
 
     /// Refuses parameters that no fit can have written.

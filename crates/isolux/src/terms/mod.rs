@@ -13,11 +13,13 @@ pub mod spline;
 pub mod square;
 
 pub(crate) mod basis;
+mod distance_law;
 mod polynomial;
 mod table;
 
 pub use angle::Angle;
 pub use cubic::Cubic;
+pub use distance_law::DistanceLaw;
 pub use lut::Lut;
 pub use noise::{Noise, NoiseModel};
 pub use polynomial::DistanceGain;

@@ -38,7 +38,8 @@ pub struct IntensityNoise {
 }
 
 /// What is known of a camera's noise.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct NoiseModel {
     /// For frames without intensity.
     pub by_amplitude: AmplitudeNoise,

@@ -149,11 +149,11 @@ mod tests {
 
     #[test]
     fn the_analytic_laws_are_one_at_the_reference() {
-        for gain in [super::super::square::gain(0.75), super::super::eq5::gain(0.75)] {
+        for gain in [super::super::square::distance_law(0.75), super::super::eq5::distance_law(0.75)] {
             assert!((gain.at(0.75) - 1.0).abs() <= 4.0 * f32::EPSILON);
         }
-        assert_eq!(super::super::square::gain(1.0).at(3.0), 9.0);
-        assert_eq!(super::super::eq5::gain(0.5).at(1.0), 2.5);
+        assert_eq!(super::super::square::distance_law(1.0).at(3.0), 9.0);
+        assert_eq!(super::super::eq5::distance_law(0.5).at(1.0), 2.5);
         assert_eq!(DistanceGain::ONE.at(17.0), 1.0);
     }
 }

@@ -47,6 +47,7 @@ pub use well::SoftWell;
 
 use super::{ParameterError, require};
 use crate::frame::Channels;
+use crate::names::named;
 
 /// Everything that is known of the response, tier by tier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -104,36 +105,24 @@ pub enum ResponseError {
     },
 }
 
-/// How a recording tells the fill of its pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ResponseTier {
-    /// By the integration time alone.
-    Scalar,
-    /// By the amplitude itself.
-    Amplitude,
-    /// By the integration time, for the static scene of the sweep. Never chosen unless asked for: nothing in a frame
-    /// tells that it shows that scene.
-    Pixel,
-    /// By intensity and amplitude.
-    Intensity,
-    /// By the raw bins.
-    PhaseSamples,
+named! {
+    /// How a recording tells the fill of its pixels.
+    #[non_exhaustive]
+    pub enum ResponseTier: "response tier" {
+        /// By the integration time alone, as the table does.
+        Scalar = "scalar",
+        /// By the amplitude alone, for scenes without strong ambient light.
+        Amplitude = "amplitude",
+        /// By the time, for the static scene of the sweep and no other; never chosen unless asked for.
+        Pixel = "pixel",
+        /// By intensity and amplitude.
+        Intensity = "intensity",
+        /// By the raw bins; repairs the distance too.
+        PhaseSamples = "phase_samples",
+    }
 }
 
 impl ResponseTier {
-    /// Its name, in the calibration file and on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Scalar => "scalar",
-            Self::Amplitude => "amplitude",
-            Self::Pixel => "pixel",
-            Self::Intensity => "intensity",
-            Self::PhaseSamples => "phase_samples",
-        }
-    }
-
     /// The channels that it needs besides amplitude and integration time.
     #[must_use]
     pub fn channels(self) -> Channels {

@@ -19,7 +19,7 @@ pub use fit::{SplineError, SplineUse};
 
 use super::basis::Basis;
 use super::table::DistanceTable;
-use super::{DistanceGain, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require};
+use super::{DistanceGain, DistanceLaw, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require};
 use crate::phase::SPEED_OF_LIGHT_M_PER_S;
 
 /// Smooth law over distance.
@@ -102,11 +102,11 @@ impl Spline {
     /// The multiplier in the form that the hot loop evaluates: `(d/d_ref)²` at every distance, whose range flags
     /// what is extrapolated, times the table of `exp(−deviation)`, which stays as it is outside the range.
     #[must_use]
-    pub fn gain(&self) -> (DistanceGain, DistanceTable) {
+    pub fn distance_law(&self) -> DistanceLaw {
         let [min_m, max_m] = self.valid_distance_m;
         let square = [0.0, 0.0, self.reference_distance_m.powi(-2), 0.0];
         let table = DistanceTable::new(|d| (-self.smooth_deviation(d)).exp(), min_m, max_m);
-        (DistanceGain::between(square, min_m, max_m), table)
+        DistanceLaw { polynomial: DistanceGain::between(square, min_m, max_m), table: Some(table) }
     }
 
     /// What ln h has besides the inverse square; outside the valid distances, its value at the nearer end.

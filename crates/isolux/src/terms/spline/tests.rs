@@ -138,7 +138,9 @@ fn outside_its_range_it_goes_on_as_the_square_and_the_table_says_the_same() {
         let slope = (spline.multiplier(outside) / spline.multiplier(edge)).ln() / (outside / edge).ln();
         assert!((slope - 2.0).abs() < 1e-12, "{slope}");
     }
-    let (square, table) = spline.gain();
+    let DistanceLaw { polynomial: square, table: Some(table) } = spline.distance_law() else {
+        panic!("a spline has a table")
+    };
     for i in 0..=50_000 {
         let d = 0.05 * 400f64.powf(f64::from(i) / 5e4);
         let d = f64::from(d as f32);

@@ -7,29 +7,85 @@
 //! Errors are taken for normal and the value for its own expectation, which holds from a signal-to-noise ratio of
 //! about 5: below, an amplitude is Rician (too high by `σ_a²/2a`) and a phase no longer normal.
 
-use super::kernel::BLOCK;
-use super::plan::SigmaPlan;
+use crate::calibration::Calibration;
+use crate::choice::SigmaStep;
 use crate::denoise::Denoiser;
-use crate::frame::{Frame, IntegrationTime};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Channels, Frame, IntegrationTime};
+use crate::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::standardize::kernel::BLOCK;
+use crate::standardize::planner::Planner;
+use crate::standardize::report::{Note, PlanError};
 use crate::terms::noise::AmplitudeNoise;
-use crate::terms::{DistanceGain, DistanceTable};
+use crate::terms::{DistanceLaw, NoiseModel};
+
+/// What the prediction rests on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SigmaPlan {
+    pub(crate) noise: NoiseModel,
+    /// σ_d in m of a pixel of signal-to-noise ratio 1; `None`: estimated from each frame.
+    pub(crate) unit_noise_m: Option<f64>,
+    /// Channels that it reads besides those of the other steps.
+    pub(crate) needed: Channels,
+}
+
+/// Plans the prediction where the noise is known; `distance_scales` says whether a step scales by the distance.
+///
+/// # Errors
+/// [`PlanError`] when it was asked for by name and the noise is not known or impossible.
+pub(crate) fn plan(planner: &mut Planner<'_>, distance_scales: bool) -> Result<Option<SigmaPlan>, PlanError> {
+    let required = match planner.choice.sigma {
+        SigmaStep::None => return Ok(None),
+        SigmaStep::WhereKnown => false,
+        SigmaStep::Required => true,
+    };
+    let fitted = |calibration: &Calibration| calibration.terms.noise.as_ref().map(|noise| noise.model());
+    let Some(noise) = planner.choice.noise.or(planner.calibration.and_then(fitted)) else {
+        return if required { Err(PlanError::NoiseUnknown) } else { Ok(None) };
+    };
+    noise.check()?;
+    let by_intensity = noise.by_intensity.filter(|_| planner.traits.channels.contains(Channels::INTENSITY));
+    let AmplitudeNoise { ambient_variance_dn2_per_us: ambient, .. } = noise.by_amplitude;
+    let needed = match by_intensity {
+        Some(_) => Channels::INTENSITY,
+        None if ambient > 0.0 => Channels::INTEGRATION_TIME,
+        None => Channels::empty(),
+    };
+    if !planner.has(needed, ["sigma", "sigma", "integration time"], required)? {
+        return Ok(None);
+    }
+    let unit_noise_m = planner
+        .traits
+        .modulation_frequency_hz
+        .map(|frequency_hz| SPEED_OF_LIGHT_M_PER_S / (4.0 * std::f64::consts::PI * frequency_hz));
+    let light = if by_intensity.is_some() { "intensity" } else { "amplitude" };
+    let distance = match (distance_scales, unit_noise_m) {
+        (false, _) => "",
+        (true, Some(_)) => ", that of the distance by the modulation frequency",
+        (true, None) => ", that of the distance estimated per frame",
+    };
+    if distance_scales && unit_noise_m.is_none() {
+        planner.notes.push(Note::FrequencyUnknown);
+    }
+    let parameters =
+        format!("noise of the amplitude by the {light}{distance}; ½ s″ σ_d² taken off the value");
+    planner.step("sigma", "noise", parameters);
+    Ok(Some(SigmaPlan { noise: NoiseModel { by_intensity, ..noise }, unit_noise_m, needed }))
+}
 
 /// Largest share of a value that is taken off it: where the noise of the distance is so large, the second order
 /// means nothing any more.
 const LARGEST_BIAS: f32 = 0.25;
 
-/// What one frame's prediction rests on.
+/// What the prediction for one frame rests on.
 #[derive(Clone, Copy)]
-pub(super) struct Predictor<'a> {
+pub(crate) struct Predictor<'a> {
     frame: &'a Frame,
     /// As the response leaves it.
     amplitude: &'a [f32],
     light: Light<'a>,
     /// σ_d in m of a pixel of signal-to-noise ratio 1.
     unit_noise_m: f32,
-    law: &'a DistanceGain,
-    table: Option<&'a DistanceTable>,
+    law: &'a DistanceLaw,
     /// Share of the variance of each distance that is left; empty: all of it.
     variance_left: &'a [f32],
 }
@@ -87,45 +143,43 @@ fn shot(light_dn: &[f32], per_dn: f32, variance: &mut [f32]) {
 }
 
 impl<'a> Predictor<'a> {
-    /// `amplitude` is the frame's, linear where the response makes it so; `scratch` (one per pixel) is overwritten.
-    pub(super) fn new(
+    /// `amplitude` is the frame's, corrected for saturation where the response does that; `law` that of the distance
+    /// step; `signal_to_noise` is memory for the estimate of the distance's noise.
+    pub(crate) fn new(
         plan: &SigmaPlan,
         frame: &'a Frame,
         amplitude: &'a [f32],
-        law: Option<(&'a DistanceGain, Option<&'a DistanceTable>)>,
+        law: Option<&'a DistanceLaw>,
         denoiser: &mut Denoiser,
-        scratch: &mut [f32],
+        signal_to_noise: &mut Vec<f32>,
     ) -> Self {
         let light = Light::of(plan, frame, amplitude);
-        let (law, table) = law.unwrap_or((&DistanceGain::ONE, None));
         let unit_noise_m = match (plan.unit_noise_m, &frame.distance_m) {
             (Some(known_m), _) => known_m,
-            (None, Some(distance_m)) if *law != DistanceGain::ONE => {
-                signal_to_noise(frame, amplitude, light, scratch);
-                denoiser.unit_noise_m(frame, distance_m, scratch)
+            (None, Some(distance_m)) if law.is_some() => {
+                signal_to_noise.resize(amplitude.len(), f32::NAN);
+                fill_signal_to_noise(frame, amplitude, light, signal_to_noise);
+                denoiser.unit_noise_m(frame, distance_m, signal_to_noise)
             }
             _ => 0.0,
         };
-        let unit_noise_m = unit_noise_m as f32;
-        Self { frame, amplitude, light, unit_noise_m, law, table, variance_left: &[] }
+        let (unit_noise_m, law) = (unit_noise_m as f32, law.unwrap_or(&DistanceLaw::ONE));
+        Self { frame, amplitude, light, unit_noise_m, law, variance_left: &[] }
     }
 
     /// With the distances denoised.
-    pub(super) fn after_denoising(self, variance_left: &'a [f32]) -> Self {
+    pub(crate) fn after_denoising(self, variance_left: &'a [f32]) -> Self {
         Self { variance_left, ..self }
     }
 
     /// Writes the σ of one block, and takes the bias off its values. `start` is the block's first pixel.
-    pub(super) fn predict(&self, start: usize, distance_m: &[f32], values: &mut [f32], sigma: &mut [f32]) {
+    pub(crate) fn predict(&self, start: usize, distance_m: &[f32], values: &mut [f32], sigma: &mut [f32]) {
         let count = values.len();
         let amplitude = &self.amplitude[start..start + count];
         let (mut noise, mut slope, mut curvature) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
         self.light.variances(self.frame, start, &mut noise[..count]);
         relative_noise(amplitude, &mut noise[..count]);
-        derivatives(self.law, distance_m, &mut slope[..count], &mut curvature[..count]);
-        if let Some(table) = self.table {
-            with_table(table, distance_m, &mut slope[..count], &mut curvature[..count]);
-        }
+        self.law.relative_derivatives(distance_m, &mut slope[..count], &mut curvature[..count]);
         let mut distance_variance = [self.unit_noise_m * self.unit_noise_m; BLOCK];
         if let Some(left) = self.variance_left.get(start..start + count) {
             distance_variance.iter_mut().zip(left).for_each(|(variance, left)| *variance *= left);
@@ -141,7 +195,7 @@ impl<'a> Predictor<'a> {
 }
 
 /// a/σ_a of every pixel.
-fn signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out: &mut [f32]) {
+fn fill_signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out: &mut [f32]) {
     let amplitudes = amplitude.chunks(BLOCK);
     for (index, (amplitude, out)) in amplitudes.zip(out.chunks_mut(BLOCK)).enumerate() {
         light.variances(frame, index * BLOCK, out);
@@ -155,26 +209,6 @@ fn signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out: &mut
 fn relative_noise(amplitude: &[f32], variance: &mut [f32]) {
     for (variance, &a) in variance.iter_mut().zip(amplitude) {
         *variance /= a * a;
-    }
-}
-
-/// `s′/s` and `s″/s` of the law.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
-fn derivatives(law: &DistanceGain, distance_m: &[f32], slope: &mut [f32], curvature: &mut [f32]) {
-    for ((&d, slope), curvature) in distance_m.iter().zip(slope).zip(curvature) {
-        let [s, s1, s2] = law.derivatives(d);
-        *slope = s1 / s;
-        *curvature = s2 / s;
-    }
-}
-
-/// The same of the law times the table: `(st)″ / st = s″/s + 2 (s′/s)(t′/t) + t″/t`.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
-fn with_table(table: &DistanceTable, distance_m: &[f32], slope: &mut [f32], curvature: &mut [f32]) {
-    for ((&d, slope), curvature) in distance_m.iter().zip(slope).zip(curvature) {
-        let [t, t1, t2] = table.derivatives(d);
-        *curvature += 2.0 * *slope * (t1 / t) + t2 / t;
-        *slope += t1 / t;
     }
 }
 
@@ -210,12 +244,6 @@ fn propagate(block: Propagated<'_>, values: &mut [f32], sigma: &mut [f32]) {
     }
 }
 
-/// The plane of σ, made where there is none.
-pub(super) fn plane(sigma: &mut Option<Plane<f32>>, shape: Shape) -> &mut Plane<f32> {
-    let plane = sigma.get_or_insert_with(|| Plane::filled(shape, f32::NAN));
-    plane.reshape(shape, f32::NAN);
-    plane
-}
-
 #[cfg(test)]
+#[path = "sigma_tests.rs"]
 mod tests;

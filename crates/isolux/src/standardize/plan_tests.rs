@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::calibration::Reference;
-use crate::standardize::choice::{DenoiseStep, DistanceStep, TimeStep};
+use crate::choice::{DenoiseStep, DistanceStep, Method, TimeStep};
 
 const BOTH: Channels = Channels::INTEGRATION_TIME.union(Channels::DISTANCE).union(Channels::AMPLITUDE);
 
@@ -32,10 +32,7 @@ fn terms_that_the_calibration_lacks_are_notes_for_best_and_errors_by_name() {
     let empty = Calibration::new(None, Reference::default());
     let plan = Plan::new(&Choice::default(), Some(&empty), BOTH.into()).unwrap();
     assert_eq!(terms(&plan), ["histogram"]);
-    assert!(matches!(
-        plan.notes[..],
-        [Note::TermMissing { term: "lut", .. }, Note::TermMissing { term: "cubic", .. }]
-    ));
+    assert_eq!(plan.notes, [Note::NoTimeTerm, Note::NoDistanceTerm]);
     for choice in [
         Choice { method: Method::Paper, ..Choice::default() },
         Choice { time: Some(TimeStep::Lut), ..Choice::default() },

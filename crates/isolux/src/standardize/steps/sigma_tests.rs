@@ -1,14 +1,15 @@
 //! The propagation against arithmetic by hand, numeric derivatives and simulated noise.
 
-use super::super::{
-    Choice, DenoiseStep, DistanceStep, SigmaStep, SpecularStep, Standardized, Standardizer, TimeStep,
-};
 use crate::calibration::{Calibration, Reference};
 use crate::denoise::DenoiseRule;
 use crate::frame::{Channels, Frame, IntegrationTime};
 use crate::hash::splitmix64;
 use crate::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::plane::{Plane, Shape};
+use crate::standardize::{
+    Choice, DenoiseStep, DistanceStep, PlanError, RecordingTraits, SigmaStep, SpecularStep, Standardizer,
+    TimeStep,
+};
 use crate::terms::noise::{AmplitudeNoise, IntensityNoise, NoiseModel};
 
 const CHANNELS: Channels = Channels::AMPLITUDE.union(Channels::DISTANCE).union(Channels::INTEGRATION_TIME);
@@ -31,7 +32,6 @@ fn choice(noise: NoiseModel) -> Choice {
         specular: Some(SpecularStep::None),
         sigma: SigmaStep::Required,
         noise: Some(noise),
-        modulation_frequency_hz: Some(UNIT_FREQUENCY_HZ),
         ..Choice::default()
     }
 }
@@ -46,13 +46,23 @@ fn frame(amplitude: &[f32], distance_m: &[f32]) -> Frame {
     frame
 }
 
+/// Values and σ at [`UNIT_FREQUENCY_HZ`].
 fn apply(choice: &Choice, calibration: Option<&Calibration>, frame: &Frame) -> (Vec<f32>, Vec<f32>) {
+    apply_at(Some(UNIT_FREQUENCY_HZ), choice, calibration, frame)
+}
+
+fn apply_at(
+    modulation_frequency_hz: Option<f64>,
+    choice: &Choice,
+    calibration: Option<&Calibration>,
+    frame: &Frame,
+) -> (Vec<f32>, Vec<f32>) {
     let mut channels = CHANNELS;
     channels.set(Channels::INTENSITY, frame.intensity.is_some());
-    let standardizer = Standardizer::plan(choice, calibration, channels).unwrap();
-    let mut out = Standardized::new(frame.shape());
-    standardizer.apply(frame, &mut out).unwrap();
-    (out.amplitude.values().to_vec(), out.sigma.unwrap().values().to_vec())
+    let traits = RecordingTraits { modulation_frequency_hz, ..channels.into() };
+    let mut stream = Standardizer::plan(choice, calibration, traits).unwrap().stream();
+    let out = stream.push(frame).unwrap();
+    (out.amplitude.values().to_vec(), out.sigma.as_ref().unwrap().values().to_vec())
 }
 
 /// Within `ulps` roundings of f32.
@@ -119,7 +129,7 @@ fn a_hopeless_pixel_keeps_three_quarters_of_its_value() {
 fn what_is_not_known_is_refused_or_left_out() {
     let unknown = Choice { noise: None, ..choice(noise(1.0, 0.0, 0.0)) };
     let plan = |choice: &Choice| Standardizer::plan(choice, None, CHANNELS);
-    assert_eq!(plan(&unknown).unwrap_err(), super::super::PlanError::NoiseUnknown);
+    assert_eq!(plan(&unknown).unwrap_err(), PlanError::NoiseUnknown);
     let where_known = Choice { sigma: SigmaStep::WhereKnown, ..unknown };
     assert!(!plan(&where_known).unwrap().predicts_sigma());
     let none = Choice { sigma: SigmaStep::None, ..choice(noise(1.0, 0.0, 0.0)) };
@@ -151,8 +161,13 @@ fn wall(side: usize, distance_m: f64, amplitude: f64, sigma_dn: f64, unit_m: f64
 }
 
 /// Mean and deviation of a wall's values, and the root mean square of their σ.
-fn statistics(choice: &Choice, calibration: Option<&Calibration>, frame: &Frame) -> (f64, f64, f64) {
-    let (values, sigma) = apply(choice, calibration, frame);
+fn statistics(
+    frequency_hz: Option<f64>,
+    choice: &Choice,
+    calibration: Option<&Calibration>,
+    frame: &Frame,
+) -> (f64, f64, f64) {
+    let (values, sigma) = apply_at(frequency_hz, choice, calibration, frame);
     let count = values.len() as f64;
     let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / count;
     let variance = values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / count;
@@ -168,13 +183,11 @@ fn sigma_and_bias_are_those_of_simulated_noise_under_every_law() {
     for step in [DistanceStep::Square, DistanceStep::Eq5, DistanceStep::Cubic, DistanceStep::Spline] {
         let mut choice = choice(noise(sigma_dn * sigma_dn, 0.0, 0.0));
         choice.distance = Some(step);
-        choice.modulation_frequency_hz = Some(frequency_hz);
         let noisy = wall(100, distance_m, amplitude, sigma_dn, unit_m, &mut 0);
-        let (mean, found, predicted) = statistics(&choice, Some(&calibration), &noisy);
+        let (mean, found, predicted) = statistics(Some(frequency_hz), &choice, Some(&calibration), &noisy);
         choice.sigma = SigmaStep::None;
-        let standardizer = Standardizer::plan(&choice, Some(&calibration), CHANNELS).unwrap();
-        let mut truth = Standardized::new(Shape::new(1, 1));
-        standardizer.apply(&frame(&[amplitude as f32], &[distance_m as f32]), &mut truth).unwrap();
+        let mut stream = Standardizer::plan(&choice, Some(&calibration), CHANNELS).unwrap().stream();
+        let truth = stream.push(&frame(&[amplitude as f32], &[distance_m as f32])).unwrap();
         let truth = f64::from(truth.amplitude.values()[0]);
         // 10⁴ values: 1 % of the deviation for the mean, 0.7 % for the deviation; three of each. The fourth order of
         // the noise, (σ_d/d)⁴ ≈ 1e-4 of the value, is less than that.
@@ -201,10 +214,9 @@ fn calibration() -> Calibration {
 #[test]
 fn the_noise_of_the_distance_is_found_where_the_frequency_is_unknown() {
     let noisy = wall(100, 1.0, 200.0, 10.0, 2.0, &mut 9);
-    let known =
-        Choice { modulation_frequency_hz: Some(UNIT_FREQUENCY_HZ / 2.0), ..choice(noise(100.0, 0.0, 0.0)) };
-    let unknown = Choice { modulation_frequency_hz: None, ..known };
-    let [(.., known), (.., unknown)] = [known, unknown].map(|choice| statistics(&choice, None, &noisy));
+    let choice = choice(noise(100.0, 0.0, 0.0));
+    let [(.., known), (.., unknown)] = [Some(UNIT_FREQUENCY_HZ / 2.0), None]
+        .map(|frequency_hz| statistics(frequency_hz, &choice, None, &noisy));
     // The median of 10⁴ differences, each of which shares its pixels with eight others: 3 %.
     assert!((unknown / known - 1.0).abs() < 0.03, "{unknown} {known}");
 }
@@ -214,12 +226,9 @@ fn what_denoising_leaves_is_predicted_on_a_flat_wall() {
     // The distance's share of the noise is four times the amplitude's: what is left of it decides.
     let noisy = wall(120, 1.0, 200.0, 10.0, 2.0, &mut 77);
     for rule in [DenoiseRule::Median, DenoiseRule::Wiener, DenoiseRule::Plane] {
-        let choice = Choice {
-            modulation_frequency_hz: Some(UNIT_FREQUENCY_HZ / 2.0),
-            denoise: Some(DenoiseStep::Smooth(rule)),
-            ..choice(noise(100.0, 0.0, 0.0))
-        };
-        let (_, found, predicted) = statistics(&choice, None, &noisy);
+        let choice = Choice { denoise: Some(DenoiseStep::Smooth(rule)), ..choice(noise(100.0, 0.0, 0.0)) };
+        let frequency_hz = Some(UNIT_FREQUENCY_HZ / 2.0);
+        let (_, found, predicted) = statistics(frequency_hz, &choice, None, &noisy);
         // 0.6 % of the deviation by chance, four times that by the distances that 5×5 pixels share; the shares
         // themselves are good to a fifth of what is left, which is a third of the variance.
         assert!((predicted / found - 1.0).abs() < 0.06, "{rule:?}: {predicted} {found}");

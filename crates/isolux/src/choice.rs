@@ -1,0 +1,239 @@
+//! What the user asks for: a method, and single steps that override it.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::denoise::DenoiseRule;
+use crate::frame::Channels;
+use crate::names::{UnknownName, by_name, named};
+use crate::specular::{RuleError, SpecularRule};
+use crate::terms::NoiseModel;
+use crate::terms::response::ResponseTier;
+
+named! {
+    /// Which terms to use where no single step says otherwise.
+    #[derive(Default)]
+    pub enum Method: "method" {
+        /// The paper's chain, lut, cubic and histogram: the calibration must hold them.
+        Paper = "paper",
+        /// The best terms that the calibration holds; without a calibration, textbook physics.
+        #[default]
+        Best = "best",
+    }
+}
+
+named! {
+    /// The step that takes the integration time out.
+    #[non_exhaustive]
+    pub enum TimeStep: "time step" {
+        /// The calibration's lookup table.
+        Lut = "lut",
+        /// The calibration's response to the fill of each pixel, then `t_ref / t`.
+        Response = "response",
+        /// `t_ref / t`.
+        Linear = "linear",
+        /// Leave the integration time in.
+        None = "none",
+    }
+}
+
+named! {
+    /// The step that takes the distance out.
+    #[non_exhaustive]
+    pub enum DistanceStep: "distance step" {
+        /// The calibration's polynomial.
+        Cubic = "cubic",
+        /// The calibration's smooth law.
+        Spline = "spline",
+        /// `(d / d_ref)²`.
+        Square = "square",
+        /// Eq. 5 of the paper: `((2d)² + 1) / ((2 d_ref)² + 1)`, d in metres.
+        Eq5 = "eq5",
+        /// Leave the distance in.
+        None = "none",
+    }
+}
+
+named! {
+    /// The step that takes the illumination profile out.
+    pub enum ProfileStep: "profile step" {
+        /// Divide by the calibration's illumination profile.
+        On = "on",
+        /// Leave the illumination profile in.
+        Off = "off",
+    }
+}
+
+named! {
+    /// The step that takes the angle of incidence out.
+    pub enum AngleStep: "angle step" {
+        /// Divide by the cosine to the calibration's exponent; Lambert's, 1, where it holds none.
+        On = "on",
+        /// Leave the angle of incidence in.
+        Off = "off",
+    }
+}
+
+named! {
+    /// Whether the standard deviation of each value is predicted. Where it is, the bias that the noise of the distance
+    /// brings is taken off the values.
+    #[derive(Default)]
+    pub enum SigmaStep: "sigma step" {
+        /// Predict it; an error when the noise is not known.
+        Required = "on",
+        /// Predict it where the choice or the calibration knows the noise.
+        WhereKnown = "where-known",
+        /// Predict nothing, take nothing off.
+        #[default]
+        None = "off",
+    }
+}
+
+/// The step that denoises the distance before it scales.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DenoiseStep {
+    /// By this rule.
+    Smooth(DenoiseRule),
+    /// Scale by the distance as it was delivered.
+    None,
+}
+
+/// The step that limits highlights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpecularStep {
+    /// Limit by this rule.
+    Limit(SpecularRule),
+    /// Leave them.
+    None,
+}
+
+/// The name of a step that does nothing.
+const NONE: &str = "none";
+
+impl fmt::Display for DenoiseStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Smooth(rule) => rule.fmt(f),
+            Self::None => f.pad(NONE),
+        }
+    }
+}
+
+impl FromStr for DenoiseStep {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        match text {
+            NONE => Ok(Self::None),
+            text => text.parse().map(Self::Smooth),
+        }
+    }
+}
+
+impl fmt::Display for SpecularStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Limit(rule) => rule.fmt(f),
+            Self::None => f.pad(NONE),
+        }
+    }
+}
+
+impl FromStr for SpecularStep {
+    type Err = RuleError;
+
+    fn from_str(text: &str) -> Result<Self, RuleError> {
+        match text {
+            NONE => Ok(Self::None),
+            text => text.parse().map(Self::Limit),
+        }
+    }
+}
+
+by_name!(DenoiseStep);
+by_name!(SpecularStep);
+
+/// A method, and the steps that override it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Choice {
+    /// Where no single step is given.
+    pub method: Method,
+    /// Integration time.
+    pub time: Option<TimeStep>,
+    /// Tier of the response; otherwise the best that calibration and recording allow.
+    pub response_tier: Option<ResponseTier>,
+    /// Noise of the distance; otherwise it is left in.
+    pub denoise: Option<DenoiseStep>,
+    /// Distance.
+    pub distance: Option<DistanceStep>,
+    /// Illumination profile.
+    pub profile: Option<ProfileStep>,
+    /// Angle of incidence; otherwise it is left in.
+    pub angle: Option<AngleStep>,
+    /// Highlights.
+    pub specular: Option<SpecularStep>,
+    /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
+    pub low_signal_below_dn: Option<f32>,
+    /// Prediction of the standard deviation.
+    pub sigma: SigmaStep,
+    /// Noise of the amplitude, for the prediction; otherwise the calibration's.
+    pub noise: Option<NoiseModel>,
+}
+
+impl Choice {
+    /// The paper's chain.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self { method: Method::Paper, ..Self::default() }
+    }
+
+    /// Textbook physics for a recording with the `available` channels: `A d²/t`, as far as they tell it, and nothing
+    /// about highlights.
+    #[must_use]
+    pub fn textbook(available: Channels) -> Self {
+        let time = available.contains(Channels::INTEGRATION_TIME);
+        let distance = available.contains(Channels::DISTANCE);
+        Self {
+            time: Some(if time { TimeStep::Linear } else { TimeStep::None }),
+            distance: Some(if distance { DistanceStep::Square } else { DistanceStep::None }),
+            profile: Some(ProfileStep::Off),
+            specular: Some(SpecularStep::None),
+            ..Self::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specular::PercentRule;
+
+    #[test]
+    fn a_choice_reads_back_from_its_json() {
+        let choice = Choice {
+            method: Method::Paper,
+            time: Some(TimeStep::Response),
+            response_tier: Some(ResponseTier::PhaseSamples),
+            denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
+            specular: Some(SpecularStep::Limit(SpecularRule::Percent(PercentRule::Quantile(0.9)))),
+            sigma: SigmaStep::Required,
+            ..Choice::default()
+        };
+        let json = serde_json::to_value(choice).unwrap();
+        assert_eq!(json["specular"], "percent:quantile=0.9");
+        assert_eq!((&json["denoise"], &json["response_tier"]), (&"wiener".into(), &"phase_samples".into()));
+        assert_eq!(serde_json::from_value::<Choice>(json).unwrap(), choice);
+        assert!(serde_json::from_str::<Choice>(r#"{"tim": "lut"}"#).is_err());
+    }
+
+    #[test]
+    fn steps_that_do_nothing_have_a_name_too() {
+        assert_eq!("none".parse(), Ok(DenoiseStep::None));
+        assert_eq!("none".parse(), Ok(SpecularStep::None));
+        assert!("nothing".parse::<DenoiseStep>().unwrap_err().to_string().contains("median"));
+    }
+}

@@ -1,0 +1,60 @@
+//! Why a frame cannot be standardized.
+
+use crate::advice::Advice;
+use crate::choice::TimeStep;
+use crate::plane::{Shape, ShapeError};
+
+/// Why a frame cannot be standardized.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StandardizeError {
+    /// Planes that do not fit together.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The integration time that the plan needs is not there.
+    #[error(
+        "integration time found unknown (NaN or missing), a positive number of µs expected: the time step needs it"
+    )]
+    TimeUnknown,
+    /// The distance that the plan needs is not there.
+    #[error("distance found missing, a plane of metres expected: the distance step needs it")]
+    DistanceMissing,
+    /// The channel by which the response tells the fill of a pixel is not there.
+    #[error("no {channel} found, one value for each pixel expected: the response's tier needs it")]
+    FillMissing {
+        /// The channel.
+        channel: &'static str,
+    },
+    /// The response's map is that of a scene of another shape.
+    #[error(
+        "the frame is {found}, {expected} expected, the shape of the scene that the response's tier `pixel` was \
+         fitted on: it holds for that scene alone"
+    )]
+    AnotherScene {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape of the map.
+        expected: Shape,
+    },
+    /// The frame is not of the format that the illumination profile holds for.
+    #[error(
+        "a frame of {found} found, {expected} expected: the illumination profile holds for that format alone"
+    )]
+    ProfileFormat {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape that the profile was fitted on.
+        expected: Shape,
+    },
+}
+
+impl StandardizeError {
+    /// What can be done about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::TimeUnknown => Some(Advice::UseTimeStep(TimeStep::None)),
+            _ => None,
+        }
+    }
+}

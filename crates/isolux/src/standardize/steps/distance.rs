@@ -1,0 +1,75 @@
+//! The step that takes the distance out. The loop in [`crate::standardize::kernel`] applies its polynomial, flags what is
+//! extrapolated, and refuses what is no distance; a table is multiplied in before.
+
+use crate::advice::RecordingKind;
+use crate::calibration::{Calibration, REFERENCE_DISTANCE_M};
+use crate::choice::{DistanceStep, Method};
+use crate::frame::Channels;
+use crate::standardize::planner::Planner;
+use crate::standardize::report::{Note, PlanError};
+use crate::terms::{DistanceLaw, eq5, square};
+
+/// The law and what its record says; the step is entered after that of the denoising, which depends on it.
+pub(crate) struct PlannedDistance {
+    pub(crate) law: DistanceLaw,
+    pub(crate) term: &'static str,
+    pub(crate) parameters: String,
+}
+
+/// Decides the law; `None` leaves the distance in.
+///
+/// # Errors
+/// [`PlanError`] when something asked for by name cannot be done.
+pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>, PlanError> {
+    let named = planner.choice.distance;
+    let wanted = named.unwrap_or_else(|| default_step(planner));
+    if wanted == DistanceStep::None {
+        return Ok(None);
+    }
+    let term = wanted.name();
+    let required = planner.is_required(named.is_some());
+    if !planner.has(Channels::DISTANCE, ["distance", term, "distance"], required)? {
+        return Ok(None);
+    }
+    let reference_m = planner.calibration.map_or(REFERENCE_DISTANCE_M, |c| c.reference.distance_m);
+    let fitted = |[min_m, max_m]: [f64; 2]| {
+        format!("1 at {reference_m} m, valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)")
+    };
+    let missing = || planner.missing(term, RecordingKind::DistanceSweep);
+    let terms = planner.calibration.map(|calibration| &calibration.terms);
+    let (law, parameters) = match wanted {
+        DistanceStep::None => return Ok(None),
+        DistanceStep::Square => (square::distance_law(reference_m), format!("(d / {reference_m} m)²")),
+        DistanceStep::Eq5 => {
+            let parameters = format!("((2d)² + 1) / ((2·{reference_m})² + 1), d in m");
+            (eq5::distance_law(reference_m), parameters)
+        }
+        DistanceStep::Spline => {
+            let spline = terms.and_then(|terms| terms.spline.as_ref()).ok_or_else(missing)?;
+            (spline.distance_law(), fitted(spline.valid_distance_m))
+        }
+        DistanceStep::Cubic => {
+            let cubic = terms.and_then(|terms| terms.cubic.as_ref()).ok_or_else(missing)?;
+            (cubic.distance_law(), fitted(cubic.valid_distance_m))
+        }
+    };
+    Ok(Some(PlannedDistance { law, term, parameters }))
+}
+
+/// The distance step of the method; notes what `best` goes without.
+fn default_step(planner: &mut Planner<'_>) -> DistanceStep {
+    let holds =
+        |calibration: &Calibration| (calibration.terms.spline.is_some(), calibration.terms.cubic.is_some());
+    match (planner.choice.method, planner.calibration.map(holds)) {
+        (Method::Paper, _) => DistanceStep::Cubic,
+        (Method::Best, None) => DistanceStep::Square,
+        (Method::Best, Some((true, _))) => DistanceStep::Spline,
+        (Method::Best, Some((false, true))) => DistanceStep::Cubic,
+        (Method::Best, Some((false, false))) => {
+            if planner.traits.channels.contains(Channels::DISTANCE) {
+                planner.notes.push(Note::NoDistanceTerm);
+            }
+            DistanceStep::None
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The step that takes the integration time out: one multiplier per frame, or one per pixel.
+
+use std::ops::Range;
+
+use super::response::{self, PlannedResponse, SaturationCorrection};
+use crate::advice::RecordingKind;
+use crate::calibration::REFERENCE_TIME_US;
+use crate::choice::{Method, TimeStep};
+use crate::flags::PixelFlags;
+use crate::frame::{Channels, Frame, IntegrationTime};
+use crate::standardize::error::StandardizeError;
+use crate::standardize::planner::Planner;
+use crate::standardize::report::{Note, PlanError};
+use crate::terms::lut::LutAnswer;
+use crate::terms::response::ScalarResponse;
+use crate::terms::{Lut, linear};
+
+/// The step, ready to apply.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum TimePlan {
+    Lut(Lut),
+    Scalar { response: ScalarResponse, reference_us: f64 },
+    Linear { reference_us: f64 },
+    None,
+}
+
+/// Decides the multiplier over integration time, and what is done to the amplitude before.
+///
+/// # Errors
+/// [`PlanError`] when something asked for by name cannot be done.
+pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<SaturationCorrection>), PlanError> {
+    let named = planner.choice.time;
+    let wanted = named.unwrap_or_else(|| default_step(planner));
+    if wanted == TimeStep::None {
+        return Ok((TimePlan::None, None));
+    }
+    let term = wanted.name();
+    let required = planner.is_required(named.is_some());
+    if !planner.has(Channels::INTEGRATION_TIME, ["time", term, "integration time"], required)? {
+        return Ok((TimePlan::None, None));
+    }
+    let reference_us =
+        planner.calibration.and_then(|c| c.reference.integration_time_us).unwrap_or(REFERENCE_TIME_US);
+    let (plan, correction, parameters) = match wanted {
+        TimeStep::None => return Ok((TimePlan::None, None)),
+        TimeStep::Linear => (TimePlan::Linear { reference_us }, None, format!("{reference_us} µs / t")),
+        TimeStep::Lut => {
+            let lut = planner.calibration.and_then(|c| c.terms.lut.clone());
+            let lut = lut.ok_or_else(|| planner.missing(term, RecordingKind::ExposureSweep))?;
+            let [min_us, max_us] = lut.valid_integration_time_us;
+            let parameters = format!("1 at {reference_us} µs, valid from {min_us} to {max_us} µs");
+            (TimePlan::Lut(lut), None, parameters)
+        }
+        TimeStep::Response => match response::plan(planner, reference_us)? {
+            (PlannedResponse::Scalar(response), words) => {
+                (TimePlan::Scalar { response, reference_us }, None, words)
+            }
+            (PlannedResponse::PerPixel(correction), words) => {
+                (TimePlan::Linear { reference_us }, Some(correction), words)
+            }
+        },
+    };
+    planner.step("time", term, parameters);
+    Ok((plan, correction))
+}
+
+/// The time step of the method; notes what `best` goes without.
+fn default_step(planner: &mut Planner<'_>) -> TimeStep {
+    match (planner.choice.method, planner.calibration) {
+        (Method::Paper, _) => TimeStep::Lut,
+        (Method::Best, None) => TimeStep::Linear,
+        (Method::Best, Some(_)) if response::measures_the_fill(planner) => TimeStep::Response,
+        (Method::Best, Some(calibration)) if calibration.terms.lut.is_some() => TimeStep::Lut,
+        (Method::Best, Some(_)) => {
+            if planner.traits.channels.contains(Channels::INTEGRATION_TIME) {
+                planner.notes.push(Note::NoTimeTerm);
+            }
+            TimeStep::None
+        }
+    }
+}
+
+/// The multipliers of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum TimeGain<'a> {
+    /// One for all pixels.
+    Uniform(f32),
+    /// One for each pixel.
+    PerPixel(&'a [f32]),
+}
+
+impl TimeGain<'_> {
+    /// Writes the multipliers of these pixels.
+    pub(crate) fn write(self, pixels: Range<usize>, out: &mut [f32]) {
+        match self {
+            Self::Uniform(gain) => out.fill(gain),
+            Self::PerPixel(gains) => out.copy_from_slice(&gains[pixels]),
+        }
+    }
+}
+
+/// The same, and how many of the measured pixels have none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TimeGains<'a> {
+    pub(crate) gain: TimeGain<'a>,
+    pub(crate) uncovered: Uncovered,
+}
+
+/// How many measured pixels of a frame the table does not cover.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Uncovered {
+    /// Above the range, or unknown.
+    pub(crate) refused: usize,
+    /// Below the range.
+    pub(crate) extrapolated: usize,
+}
+
+/// A multiplier, and the flags of the pixels that get it. NaN where there is none.
+type Answer = (f32, PixelFlags);
+
+/// Computes the multipliers, those of single pixels into `memory`. Completes `flags`.
+///
+/// # Errors
+/// [`StandardizeError::TimeUnknown`] when the plan needs a time and the frame has none.
+pub(crate) fn gains<'a>(
+    plan: &TimePlan,
+    frame: &Frame,
+    memory: &'a mut Vec<f32>,
+    flags: &mut [PixelFlags],
+) -> Result<TimeGains<'a>, StandardizeError> {
+    // Also for frames that need none: the next one may, and must not allocate.
+    memory.resize(frame.shape().pixels(), f32::NAN);
+    let mut uncovered = Uncovered::default();
+    let gain = match (plan, &frame.integration_time_us) {
+        (TimePlan::None, _) => TimeGain::Uniform(1.0),
+        (_, IntegrationTime::Unknown) => return Err(StandardizeError::TimeUnknown),
+        (_, IntegrationTime::PerFrame(time_us)) => {
+            let (gain, flag) = answer(plan, *time_us);
+            if !flag.is_empty() {
+                flags.iter_mut().for_each(|flags| uncovered.flag(flags, flag));
+            }
+            TimeGain::Uniform(gain)
+        }
+        (_, IntegrationTime::PerPixel(map)) => {
+            let mut known = Memo::default();
+            for ((&time_us, gain), flags) in map.values().iter().zip(&mut *memory).zip(flags) {
+                let (value, flag) = known.get(time_us, |time_us| answer(plan, time_us));
+                *gain = value;
+                if !flag.is_empty() {
+                    uncovered.flag(flags, flag);
+                }
+            }
+            TimeGain::PerPixel(memory)
+        }
+    };
+    Ok(TimeGains { gain, uncovered })
+}
+
+impl Uncovered {
+    /// Flags one pixel; counts it where it was a measurement so far.
+    fn flag(&mut self, flags: &mut PixelFlags, flag: PixelFlags) {
+        let measured = !flags.contains(PixelFlags::INVALID);
+        let refused = flag.contains(PixelFlags::INVALID);
+        self.refused += usize::from(measured && refused);
+        self.extrapolated += usize::from(measured && !refused);
+        *flags |= flag;
+    }
+}
+
+fn answer(plan: &TimePlan, time_us: f64) -> Answer {
+    if !(time_us > 0.0 && time_us.is_finite()) {
+        return (f32::NAN, PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE);
+    }
+    match plan {
+        TimePlan::None => (1.0, PixelFlags::empty()),
+        TimePlan::Linear { reference_us } => {
+            (linear::multiplier(time_us, *reference_us) as f32, PixelFlags::empty())
+        }
+        TimePlan::Lut(lut) => flagged(lut.at(time_us)),
+        TimePlan::Scalar { response, reference_us } => flagged(response.at(time_us, *reference_us)),
+    }
+}
+
+fn flagged(answer: LutAnswer) -> Answer {
+    match answer {
+        LutAnswer::Inside(gain) => (gain as f32, PixelFlags::empty()),
+        LutAnswer::Below(gain) => (gain as f32, PixelFlags::TIME_OUT_OF_RANGE),
+        LutAnswer::Refused => (f32::NAN, PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE),
+    }
+}
+
+/// Remembers the last few times: cameras that mix exposures within a frame use two or three.
+#[derive(Default)]
+struct Memo {
+    entries: [Option<(u32, Answer)>; 4],
+    oldest: usize,
+}
+
+impl Memo {
+    fn get(&mut self, time_us: f32, compute: impl Fn(f64) -> Answer) -> Answer {
+        let bits = time_us.to_bits();
+        if let Some((_, answer)) = self.entries.iter().flatten().find(|(known, _)| *known == bits) {
+            return *answer;
+        }
+        let answer = compute(f64::from(time_us));
+        self.entries[self.oldest] = Some((bits, answer));
+        self.oldest = (self.oldest + 1) % self.entries.len();
+        answer
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plane::{Plane, Shape};
+
+    #[test]
+    fn a_map_of_times_gives_each_pixel_its_multiplier() {
+        let times = [125.0, 5000.0, f32::NAN, 125.0, 0.0, 60.0, 70.0, 80.0, 125.0];
+        let mut frame = Frame::new(Shape::new(3, 3));
+        frame.integration_time_us =
+            IntegrationTime::PerPixel(Plane::from_vec(Shape::new(3, 3), times.to_vec()).unwrap());
+        let (mut memory, mut flags) = (Vec::new(), [PixelFlags::empty(); 9]);
+        let plan = TimePlan::Linear { reference_us: 1000.0 };
+        flags[4] = PixelFlags::INVALID;
+        let found = gains(&plan, &frame, &mut memory, &mut flags).unwrap();
+        assert_eq!(found.uncovered, Uncovered { refused: 1, extrapolated: 0 });
+        let mut values = [0.0; 9];
+        found.gain.write(0..9, &mut values);
+        for (i, time) in times.into_iter().enumerate() {
+            if time > 0.0 {
+                assert_eq!((values[i], flags[i]), (1000.0 / time, PixelFlags::empty()));
+            } else {
+                assert!(values[i].is_nan() && flags[i].bits() == 0b1001, "{time}");
+            }
+        }
+    }
+}

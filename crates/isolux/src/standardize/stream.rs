@@ -1,0 +1,104 @@
+//! Frames that come one after the other: a recording, or a camera at work.
+
+use super::error::StandardizeError;
+use super::prepared::{MeanDistance, Prepared};
+use super::standardized::Standardized;
+use super::standardizer::Standardizer;
+use super::workspace::Workspace;
+use crate::denoise::TemporalMean;
+use crate::frame::Frame;
+use crate::plane::Shape;
+
+/// The one stateful entry to standardizing: it owns the chain, what must be remembered of earlier frames, working
+/// memory and the last result.
+///
+/// ```
+/// use isolux::{Channels, Choice, Frame, IntegrationTime, Shape, Standardizer};
+///
+/// let channels = Channels::AMPLITUDE | Channels::INTEGRATION_TIME;
+/// let mut stream = Standardizer::plan(&Choice::default(), None, channels)?.stream();
+/// for time_us in [1000.0, 2000.0] {
+///     let mut frame = Frame::new(Shape::new(1, 1));
+///     frame.amplitude.fill(0.1 * time_us as f32);
+///     frame.integration_time_us = IntegrationTime::PerFrame(time_us);
+///     let standardized = stream.push(&frame)?;
+///     assert_eq!(standardized.amplitude.get(0, 0), Some(820.0));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stream {
+    standardizer: Standardizer,
+    history: Option<TemporalMean>,
+    prepared: Prepared,
+    workspace: Workspace,
+    out: Standardized,
+}
+
+impl Standardizer {
+    /// Begins a stream of frames.
+    #[must_use]
+    pub fn stream(&self) -> Stream {
+        Stream {
+            standardizer: self.clone(),
+            history: (self.frames_before() > 0).then(TemporalMean::new),
+            prepared: Prepared::default(),
+            workspace: Workspace::default(),
+            out: Standardized::new(Shape::new(0, 0)),
+        }
+    }
+}
+
+impl Stream {
+    /// The chain.
+    #[must_use]
+    pub fn standardizer(&self) -> &Standardizer {
+        &self.standardizer
+    }
+
+    /// Standardizes the next frame. Allocates only when the shape differs from that of the last one.
+    ///
+    /// # Errors
+    /// [`StandardizeError`] when the frame lacks what the plan needs, or its planes differ in shape.
+    pub fn push(&mut self, frame: &Frame) -> Result<&Standardized, StandardizeError> {
+        let mut prepared = std::mem::take(&mut self.prepared);
+        let outcome = self.prepare(frame, &mut prepared);
+        self.prepared = prepared;
+        outcome?;
+        self.standardizer.apply(frame, &self.prepared, &mut self.workspace, &mut self.out)?;
+        Ok(&self.out)
+    }
+
+    /// Takes the next frame, in order, and writes what the frames before it contribute to it: afterwards
+    /// [`Standardizer::apply`] may work on it in any order and thread.
+    ///
+    /// # Errors
+    /// [`StandardizeError`] when the chain takes means over frames and this one has no distance, or its planes differ
+    /// in shape.
+    pub fn prepare(&mut self, frame: &Frame, out: &mut Prepared) -> Result<(), StandardizeError> {
+        let Some(history) = &mut self.history else {
+            out.mean = None;
+            return Ok(());
+        };
+        let MeanDistance { distance_m, variance_left } = out.mean.get_or_insert_default();
+        history.push(frame, distance_m)?;
+        if self.standardizer.predicts_sigma() {
+            history.variance_left(variance_left);
+        }
+        Ok(())
+    }
+
+    /// Forgets the frames so far: the next one is the first of another scene.
+    pub fn reset(&mut self) {
+        if let Some(history) = &mut self.history {
+            history.reset();
+        }
+    }
+
+    /// Bytes that it holds.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let history = self.history.as_ref().map_or(0, TemporalMean::bytes);
+        history + self.prepared.bytes() + self.workspace.bytes() + self.out.bytes()
+    }
+}

@@ -1,0 +1,34 @@
+//! Working memory for one frame at a time.
+
+use super::steps::response::Corrected;
+use crate::denoise::Denoiser;
+use crate::normals::Incidence;
+use crate::plane::bytes;
+use crate::quantile::PositiveQuantiles;
+
+/// Working memory of [`Standardizer::apply`](super::Standardizer::apply). Empty until it is used; reuse one for each
+/// thread: it allocates only when the shape of the frames changes.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    pub(super) corrected: Corrected,
+    /// Multipliers over integration time, where each pixel has its own.
+    pub(super) gains: Vec<f32>,
+    /// Of each pixel, where the noise of the distance is estimated from the frame.
+    pub(super) signal_to_noise: Vec<f32>,
+    pub(super) denoiser: Denoiser,
+    pub(super) incidence: Incidence,
+    pub(super) quantiles: PositiveQuantiles,
+}
+
+impl Workspace {
+    /// Bytes that it holds: what a frame at work costs besides the frame and its result, known after the first one.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.corrected.bytes()
+            + bytes(&self.gains)
+            + bytes(&self.signal_to_noise)
+            + self.denoiser.bytes()
+            + self.incidence.bytes()
+            + self.quantiles.bytes()
+    }
+}
