@@ -1,4 +1,4 @@
-//! Denoising the distance through the program. What it is worth on simulated frames: `isolux-paper`'s
+//! Denoising the distance through the program. What it is worth on simulated frames: `isolux-experiments`'s
 //! `tests/denoise.rs`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 

@@ -1,5 +1,5 @@
 //! The response on cameras that nobody has fitted it to: what the fits find against the truth, and how the program uses
-//! it. How much better images become: `crates/isolux-paper/tests/response.rs`.
+//! it. How much better images become: `crates/isolux-experiments/tests/response.rs`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
 mod support;
