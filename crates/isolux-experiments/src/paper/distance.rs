@@ -7,15 +7,12 @@ mod rician;
 use isolux::calibrate::FitWarning;
 use isolux_report::page::{Block, Chart, Mark, MarkAxis, Scale, Section, Series, Stroke, Table};
 
-use super::parts::{axis, number, text};
+use super::parts::{axis, number, quote, text};
 use crate::error::ExperimentError;
 use crate::paper::lab::{BoardMean, Lab};
-use curves::{Curve, cubic, curves, multiplier, time_multiplier};
-
-/// The paper's stray integration time, µs.
-const STRAY_US: f64 = 200.0;
-/// What the scaled decays may deviate by.
-const FLAT_WITHIN: f64 = 0.10;
+use curves::{
+    Curve, FLAT_WITHIN, STRAY_US, cubic, curves, multiplier, reference_amplitude_dn, time_multiplier,
+};
 
 /// The section of figures 4, 5 and 10.
 ///
@@ -56,10 +53,6 @@ pub(super) fn section(lab: &Lab) -> Result<Section, ExperimentError> {
             Block::Claims(claims),
         ],
     })
-}
-
-fn quote(text: &str, source: &str) -> Block {
-    Block::Quote { text: text.to_owned(), source: source.to_owned() }
 }
 
 fn figure_4(curves: &[Curve]) -> Chart {
@@ -239,13 +232,6 @@ fn why_left_out(lab: &Lab) -> String {
          phase becomes so noisy that distances wrap around. The calibration leaves the curve out by its own rule; \
          it said: “{said}”."
     )
-}
-
-/// Amplitude at the reference time and distance, DN.
-fn reference_amplitude_dn(lab: &Lab, curves: &[Curve]) -> f64 {
-    let reference_us = lab.calibration.reference.integration_time_us;
-    let curve = curves.iter().find(|curve| Some(curve.integration_time_us) == reference_us);
-    curve.map_or(f64::NAN, |curve| curve.reference_dn)
 }
 
 fn reference_mark(lab: &Lab) -> Mark {

@@ -4,7 +4,7 @@
 mod noise_port;
 mod table_transfer;
 
-use isolux_report::page::{Block, Section};
+use isolux_report::page::Section;
 
 use crate::error::ExperimentError;
 use crate::paper::lab::Lab;
@@ -17,8 +17,4 @@ pub(super) fn section(lab: &Lab) -> Result<Section, ExperimentError> {
     let mut blocks = table_transfer::blocks(lab)?;
     blocks.extend(noise_port::blocks(lab)?);
     Ok(Section { id: "open-questions".to_owned(), title: "What the paper left open".to_owned(), blocks })
-}
-
-fn quote(text: &str, source: &str) -> Block {
-    Block::Quote { text: text.to_owned(), source: source.to_owned() }
 }

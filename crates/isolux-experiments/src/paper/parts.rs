@@ -1,6 +1,6 @@
 //! Small pieces that several sections use.
 
-use isolux_report::page::{Axis, Cell, Scale, Verdict};
+use isolux_report::page::{Axis, Block, Cell, Scale, Verdict};
 
 /// An axis that follows its data.
 pub(super) fn axis(label: &str, scale: Scale) -> Axis {
@@ -20,4 +20,9 @@ pub(super) fn number(value: f64, decimals: usize) -> Cell {
 /// Words in a table.
 pub(super) fn text(words: &str) -> Cell {
     Cell::Text(words.to_owned())
+}
+
+/// What the paper says, and where.
+pub(super) fn quote(text: &str, source: &str) -> Block {
+    Block::Quote { text: text.to_owned(), source: source.to_owned() }
 }

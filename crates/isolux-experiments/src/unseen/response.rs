@@ -1,23 +1,21 @@
 //! How much a pixel still varies over integration times, by each way of taking the time out: the paper's table against
 //! the tiers of the response, on unseen cameras and exposures that nothing was fitted on.
 
+mod exposures;
+mod stack;
+
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
 use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardized, Standardizer};
-use isolux_camera::{CameraModel, FullWell, Scene, SimulatedFrame, Simulation};
+use isolux_camera::{SimulatedFrame, Simulation};
 
 use crate::error::ExperimentError;
 use crate::measure::time_us;
+use exposures::{camera_of, for_each, longest_us, simulation};
+use stack::{Stack, TEST_FRAMES};
 
-/// The light besides the camera's own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Light {
-    /// None.
-    Dark,
-    /// Several times the camera's own on everything beyond 1 m.
-    StrongAmbient,
-}
+pub use exposures::Light;
 
 /// What the calibration was fitted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +29,7 @@ pub enum FittedOn {
 /// One way of taking the time out, on one camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponseFigure {
-    /// Which camera: [`CameraModel::random`] of this.
+    /// Which camera: [`isolux_camera::CameraModel::random`] of this.
     pub camera: u64,
     /// The light.
     pub light: Light,
@@ -57,10 +55,6 @@ const FITTED_TIMES: u32 = 16;
 const SPAN: f64 = 8.0;
 /// Frames of each exposure that is fitted on.
 const FITTED_FRAMES: u32 = 32;
-/// Frames whose mean counts as one tested exposure: what is measured is the compression, not the noise.
-const TEST_FRAMES: u32 = 64;
-/// Share of the clip level from which on a bin is clipped (methods, section 2).
-const CLIPPED: f64 = 0.985;
 const METHODS: [(&str, TimeStep, Option<ResponseTier>); 7] = [
     ("lut", TimeStep::Lut, None),
     ("linear", TimeStep::Linear, None),
@@ -141,75 +135,6 @@ fn plan(
     Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
 }
 
-/// A random camera with fewer pixels of the same view.
-fn camera_of(seed: u64) -> CameraModel {
-    let mut model = CameraModel::random(seed);
-    let [down, across] = [48.0 / model.height as f64, 64.0 / model.width as f64];
-    (model.height, model.width) = (48, 64);
-    let intrinsics = &mut model.intrinsics;
-    (intrinsics.fx, intrinsics.cx) = (intrinsics.fx * across, intrinsics.cx * across);
-    (intrinsics.fy, intrinsics.cy) = (intrinsics.fy * down, intrinsics.cy * down);
-    model
-}
-
-/// Ambient light relative to the active light on the axis at 1 m.
-fn ambient(light: Light) -> f64 {
-    match light {
-        Light::Dark => 0.0,
-        Light::StrongAmbient => 1.0,
-    }
-}
-
-/// The time at which the mean charge of most of the scene, its wall (0.6 at 2.4 m), is that of the full well: bright
-/// objects clip long before.
-fn longest_us(model: &CameraModel, light: Light) -> f64 {
-    let rate = 0.6 * model.radiometric_electrons_per_us * (ambient(light) + 1.0 / (2.4 * 2.4));
-    FullWell::of(model).capacity_electrons / rate
-}
-
-fn simulation(
-    name: &str,
-    model: &CameraModel,
-    light: Light,
-    times_us: &[f64],
-    (frames, seed): (u32, u64),
-) -> Result<Simulation, ExperimentError> {
-    let mut scene = Scene::builtin(name)?;
-    scene.ambient = ambient(light);
-    if let ("wall-sweep", [wall]) = (name, scene.objects.as_mut_slice()) {
-        // Where the desk's wall stands, so that the sweep covers the desk's times.
-        wall.center_m[2] = 2.4;
-    }
-    scene.runs.truncate(1);
-    for run in &mut scene.runs {
-        run.registers = None;
-        run.integration_times_us = times_us.to_vec();
-        run.frames_per_time = frames;
-        // Settled: ten times the slowest warm-up.
-        run.skip_frames = 300;
-    }
-    Ok(Simulation::new(model.clone(), scene, seed)?)
-}
-
-/// Renders every frame, with clipped pixels flagged as the reader of a recording does.
-fn for_each(
-    simulation: &Simulation,
-    mut visit: impl FnMut(&SimulatedFrame) -> Result<(), ExperimentError>,
-) -> Result<(), ExperimentError> {
-    let clip_dn = (CLIPPED * simulation.model().clip_dn()) as f32;
-    let mut out = SimulatedFrame::new(simulation.shape());
-    for index in 0..simulation.len() {
-        simulation.render_frame(index, &mut out)?;
-        for bin in out.frame.phase_samples.iter().flatten() {
-            for (flags, &value) in out.frame.flags.values_mut().iter_mut().zip(bin.values()) {
-                flags.set(PixelFlags::SATURATED, value >= clip_dn || flags.contains(PixelFlags::SATURATED));
-            }
-        }
-        visit(&out)?;
-    }
-    Ok(())
-}
-
 /// The reference time is one of the sweep's in the middle, which every camera's table covers.
 fn calibrate(simulation: &Simulation, times_us: &[f64]) -> Result<Calibration, ExperimentError> {
     let reference = Reference { integration_time_us: times_us.get(6).copied(), ..Reference::default() };
@@ -221,16 +146,6 @@ fn calibrate(simulation: &Simulation, times_us: &[f64]) -> Result<Calibration, E
     let mut sweep = ExposureSweep::new("sweep", &settings);
     for_each(simulation, |simulated| Ok(sweep.push(&simulated.frame)?))?;
     Ok(calibrate::fit(&settings, None, vec![sweep.finish()], Vec::new())?.0)
-}
-
-/// Mean standardized image of each test exposure, NaN where a pixel is invalid or clipped in any of its frames.
-#[derive(Clone, Debug, Default)]
-struct Stack {
-    exposures: Vec<Vec<f64>>,
-    /// Unclipped pixels of all exposures.
-    unclipped: usize,
-    /// Those of them that have a value.
-    valid: usize,
 }
 
 /// What each plan makes of the exposures, and what the true factors of compression and time do.
@@ -267,36 +182,4 @@ fn true_values(simulated: &SimulatedFrame) -> impl Iterator<Item = f64> {
     let value =
         move |i: usize| f64::from(measured[i]) * f64::from(linear[i]) / f64::from(compressed[i]) / time_us;
     (0..measured.len()).map(value)
-}
-
-impl Stack {
-    /// Adds one frame, the `place`-th of its exposure.
-    fn add(&mut self, place: u32, values: impl Iterator<Item = f64>, clipped: &[bool]) {
-        if place == 0 {
-            self.exposures.push(vec![0.0; clipped.len()]);
-        }
-        let Some(means) = self.exposures.last_mut() else { return };
-        for ((mean, value), clipped) in means.iter_mut().zip(values).zip(clipped) {
-            *mean += if *clipped { f64::NAN } else { value / f64::from(TEST_FRAMES) };
-        }
-        if place + 1 == TEST_FRAMES {
-            self.unclipped += clipped.iter().filter(|clipped| !**clipped).count();
-            self.valid += means.iter().filter(|mean| mean.is_finite()).count();
-        }
-    }
-
-    /// Median and 95th percentile over the pixels of the coefficient of variation over the exposures, where `mask` has
-    /// a value and the pixel has one at half of the exposures or more.
-    fn variation(&self, mask: &Self) -> [f64; 2] {
-        let pixels = self.exposures.first().map_or(0, Vec::len);
-        let of_pixel = |pixel: usize| {
-            let pairs = self.exposures.iter().zip(&mask.exposures);
-            let values = pairs.filter(|(_, mask)| mask[pixel].is_finite()).map(|(own, _)| own[pixel]);
-            let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-            (2 * values.len() >= self.exposures.len())
-                .then(|| crate::measure::coefficient_of_variation(&values))
-        };
-        let mut all: Vec<f64> = (0..pixels).filter_map(of_pixel).filter(|cv| cv.is_finite()).collect();
-        [0.5, 0.95].map(|share| isolux::statistics::quantile(&mut all, share).unwrap_or(f64::NAN))
-    }
 }

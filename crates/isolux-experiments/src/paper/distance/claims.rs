@@ -3,8 +3,10 @@
 use isolux::terms::Cubic;
 use isolux_report::page::Claim;
 
-use super::curves::{Curve, cubic, multiplier, time_multiplier};
-use super::{FLAT_WITHIN, STRAY_US, median, reference_amplitude_dn, rician};
+use super::curves::{
+    Curve, FLAT_WITHIN, STRAY_US, cubic, multiplier, reference_amplitude_dn, time_multiplier,
+};
+use super::{median, rician};
 use crate::error::ExperimentError;
 use crate::paper::lab::{BoardMean, Lab};
 use crate::paper::parts::verdict;

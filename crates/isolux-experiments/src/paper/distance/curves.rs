@@ -9,6 +9,11 @@ use isolux::terms::lut::LutAnswer;
 use crate::error::ExperimentError;
 use crate::paper::lab::{BoardMean, Lab};
 
+/// The paper's stray integration time, µs.
+pub(super) const STRAY_US: f64 = 200.0;
+/// What the scaled decays may deviate by.
+pub(super) const FLAT_WITHIN: f64 = 0.10;
+
 /// The decay of one integration time, from where over-saturation ends.
 pub(super) struct Curve {
     /// Integration time, µs.
@@ -138,4 +143,11 @@ pub(super) fn time_multiplier(lab: &Lab, integration_time_us: f64) -> f64 {
         Some(LutAnswer::Inside(multiplier) | LutAnswer::Below(multiplier)) => multiplier,
         _ => f64::NAN,
     }
+}
+
+/// Amplitude at the reference time and distance, DN.
+pub(super) fn reference_amplitude_dn(lab: &Lab, curves: &[Curve]) -> f64 {
+    let reference_us = lab.calibration.reference.integration_time_us;
+    let curve = curves.iter().find(|curve| Some(curve.integration_time_us) == reference_us);
+    curve.map_or(f64::NAN, |curve| curve.reference_dn)
 }

@@ -5,11 +5,10 @@ use isolux::{Standardized, Window};
 use isolux_camera::{CameraModel, Scene, Simulation};
 use isolux_report::page::{Block, Chart, Claim, Scale, Series, Stroke, Table};
 
-use super::quote;
 use crate::error::ExperimentError;
 use crate::measure::{WINDOW_PX, for_each};
 use crate::paper::lab::Lab;
-use crate::paper::parts::{axis, number, text, verdict};
+use crate::paper::parts::{axis, number, quote, text, verdict};
 
 /// Low, short and reference integration time, µs.
 const TIMES_US: [f64; 3] = [200.0, 1000.0, 8200.0];

@@ -7,11 +7,10 @@ use isolux_camera::scene::texture::Texture;
 use isolux_camera::{Scene, Simulation};
 use isolux_report::page::{Block, Cell, Chart, Claim, Mark, MarkAxis, Scale, Series, Stroke, Table, Verdict};
 
-use super::quote;
 use crate::error::ExperimentError;
 use crate::measure::for_each;
 use crate::paper::lab::Lab;
-use crate::paper::parts::{axis, number, text, verdict};
+use crate::paper::parts::{axis, number, quote, text, verdict};
 
 /// Ambient light of the laboratory's wall, and others, relative to the active light at 1 m.
 const AMBIENTS: [f64; 5] = [0.0, 0.35, LAB_AMBIENT, 1.4, 2.8];

@@ -2,8 +2,8 @@
 
 use isolux_report::page::{Claim, Verdict};
 
-use super::Cases;
 use super::cases::{Case, HISTOGRAM, OF_MAXIMUM, SIGMA, UPPER_TENTH};
+use super::images::Cases;
 use crate::paper::parts::verdict;
 
 /// Structure counts as kept when each of its measures is at least this.
