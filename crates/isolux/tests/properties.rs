@@ -1,23 +1,16 @@
 //! Laws of standardizing and fitting that hold for every frame and every sweep.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
+mod common;
 
+use common::standardize::{Finished, Memory, standardize};
+use common::strategies::{PIXELS, bits, cases, distance_steps, frames, specular_steps, steps, time_steps};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::{ExposureSample, LutAnswer};
 use isolux::terms::{Cubic, Lut};
-use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape, Standardized, Standardizer};
+use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape};
 use proptest::prelude::*;
-use support::strategies::{
-    PIXELS, SHAPE, bits, cases, distance_steps, frames, specular_steps, steps, time_steps,
-};
-
-fn apply(standardizer: &Standardizer, frame: &Frame) -> Standardized {
-    let mut out = Standardized::new(frame.shape());
-    standardizer.apply(frame, &mut out).unwrap();
-    out
-}
 
 fn scale(plane: &mut Plane<f32>, factor: f32) {
     plane.values_mut().iter_mut().for_each(|value| *value *= factor);
@@ -32,7 +25,7 @@ fn scale_time(frame: &mut Frame, factor: f32) {
 }
 
 /// The same flags, and values within `roundings` half ulps, of pixels that are valid in both.
-fn assert_near(found: &Standardized, expected: &[f32], roundings: f32) -> Result<(), TestCaseError> {
+fn assert_near(found: &Finished, expected: &[f32], roundings: f32) -> Result<(), TestCaseError> {
     for (found, &expected) in found.amplitude.values().iter().zip(expected) {
         prop_assert_eq!(found.is_nan(), expected.is_nan());
         let deviation = (found / expected - 1.0).abs();
@@ -51,15 +44,14 @@ proptest! {
     ) {
         let before = (bits(&frame.amplitude), bits(frame.distance_m.as_ref().unwrap()), frame.flags.clone());
         let standardizer = steps(time, distance, specular);
-        let mut out = Standardized::new(SHAPE);
-        let summary = standardizer.apply(&frame, &mut out).unwrap();
+        let out = standardize(&standardizer, &frame);
         for (index, (&value, flags)) in out.amplitude.values().iter().zip(out.flags.values()).enumerate() {
             prop_assert_eq!(value.is_nan(), flags.contains(PixelFlags::INVALID));
             prop_assert!(value.is_nan() || (value > 0.0 && value.is_finite()));
             prop_assert!(flags.contains(frame.flags.values()[index]), "a flag was lost");
         }
         let valid = out.amplitude.values().iter().filter(|value| !value.is_nan()).count();
-        prop_assert_eq!((summary.valid, summary.pixels), (valid, PIXELS));
+        prop_assert_eq!((out.summary.valid, out.summary.pixels), (valid, PIXELS));
         prop_assert_eq!(before, (bits(&frame.amplitude), bits(frame.distance_m.as_ref().unwrap()), frame.flags));
     }
 
@@ -73,10 +65,10 @@ proptest! {
     ) {
         let gain = 2f32.powi(exponent);
         let standardizer = steps(time, distance, specular);
-        let mut expected = apply(&standardizer, &frame);
+        let mut expected = standardize(&standardizer, &frame);
         let mut louder = frame.clone();
         scale(&mut louder.amplitude, gain);
-        let found = apply(&standardizer, &louder);
+        let found = standardize(&standardizer, &louder);
         scale(&mut expected.amplitude, gain);
         prop_assert_eq!(bits(&found.amplitude), bits(&expected.amplitude));
         prop_assert_eq!(found.flags, expected.flags);
@@ -88,10 +80,10 @@ proptest! {
         frame in frames(), time in time_steps(), distance in distance_steps(), gain in 1e-2..1e2f32,
     ) {
         let standardizer = steps(time, distance, SpecularStep::None);
-        let mut expected = apply(&standardizer, &frame);
+        let mut expected = standardize(&standardizer, &frame);
         let mut louder = frame.clone();
         scale(&mut louder.amplitude, gain);
-        let found = apply(&standardizer, &louder);
+        let found = standardize(&standardizer, &louder);
         scale(&mut expected.amplitude, gain);
         assert_near(&found, expected.amplitude.values(), 8.0)?;
         prop_assert_eq!(found.flags, expected.flags);
@@ -102,11 +94,11 @@ proptest! {
     #[test]
     fn light_and_time_cancel(frame in frames(), distance in distance_steps(), factor in 0.05..20f32) {
         let standardizer = steps(TimeStep::Linear, distance, SpecularStep::None);
-        let expected = apply(&standardizer, &frame);
+        let expected = standardize(&standardizer, &frame);
         let mut longer = frame.clone();
         scale(&mut longer.amplitude, factor);
         scale_time(&mut longer, factor);
-        let found = apply(&standardizer, &longer);
+        let found = standardize(&standardizer, &longer);
         assert_near(&found, expected.amplitude.values(), 8.0)?;
         prop_assert_eq!(found.flags, expected.flags);
     }
@@ -116,11 +108,11 @@ proptest! {
     #[test]
     fn amplitude_and_distance_cancel(frame in frames(), time in time_steps(), factor in 0.2..5f32) {
         let standardizer = steps(time, DistanceStep::Square, SpecularStep::None);
-        let expected = apply(&standardizer, &frame);
+        let expected = standardize(&standardizer, &frame);
         let mut farther = frame.clone();
         scale(&mut farther.amplitude, 1.0 / (factor * factor));
         scale(farther.distance_m.as_mut().unwrap(), factor);
-        let found = apply(&standardizer, &farther);
+        let found = standardize(&standardizer, &farther);
         assert_near(&found, expected.amplitude.values(), 12.0)?;
         prop_assert_eq!(found.flags, expected.flags);
     }
@@ -132,7 +124,7 @@ proptest! {
         spoilt in prop::collection::vec((0..PIXELS, prop::sample::select(vec![f32::NAN, 0.0]), any::<bool>()), 1..9),
     ) {
         let standardizer = steps(time, distance, SpecularStep::None);
-        let expected = apply(&standardizer, &frame);
+        let expected = standardize(&standardizer, &frame);
         let mut damaged = frame.clone();
         for &(index, value, in_distance) in &spoilt {
             let distance_m = damaged.distance_m.as_mut().unwrap();
@@ -140,9 +132,9 @@ proptest! {
             plane.values_mut()[index] = value;
         }
         damaged.flag_amplitude(None);
-        let found = apply(&standardizer, &damaged);
+        let found = standardize(&standardizer, &damaged);
         for index in (0..PIXELS).filter(|index| spoilt.iter().all(|(i, ..)| i != index)) {
-            let value = |out: &Standardized| out.amplitude.values()[index].to_bits();
+            let value = |out: &Finished| out.amplitude.values()[index].to_bits();
             prop_assert_eq!(value(&found), value(&expected));
             prop_assert_eq!(found.flags.values()[index], expected.flags.values()[index]);
         }
@@ -155,11 +147,11 @@ proptest! {
         specular in specular_steps(),
     ) {
         let standardizer = steps(time, distance, specular);
-        let mut reused = Standardized::new(Shape::new(2, 3));
+        let mut memory = Memory::new(Shape::new(2, 3));
         for frame in sequence.iter().chain(sequence.iter().rev()) {
-            let summary = standardizer.apply(frame, &mut reused).unwrap();
-            let mut fresh = Standardized::new(SHAPE);
-            prop_assert_eq!(standardizer.apply(frame, &mut fresh).unwrap(), summary);
+            let reused = memory.standardize(&standardizer, frame).unwrap();
+            let fresh = standardize(&standardizer, frame);
+            prop_assert_eq!(fresh.summary, reused.summary);
             prop_assert_eq!(bits(&reused.amplitude), bits(&fresh.amplitude));
             prop_assert_eq!(&reused.flags, &fresh.flags);
         }

@@ -1,20 +1,16 @@
 //! The spline over distance: what it is of the simulated camera's true law, what it leaves of the paper's protocol on
-//! frames and cameras that it was not made on, and how the program uses it. The figures of the protocol:
-//! `cargo test --release -p isolux-cli --test spline -- --nocapture the_order`.
+//! frames and cameras that it was not made on, and how a chain uses it. The figures of the protocol:
+//! `cargo test --release -p isolux --test spline -- --nocapture the_order`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
-
-use std::fs;
+mod common;
 
 use isolux::calibrate::{self, CalibrateSettings, DistanceSweep};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::Decay;
 use isolux::terms::{Cubic, Spline};
-use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardized, Standardizer};
+use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardizer};
 use isolux_camera::{CameraModel, Scene, Simulation};
-use serde_json::Value;
-use support::{run, simulate};
 
 const REFERENCE_M: f64 = 0.75;
 
@@ -37,7 +33,7 @@ fn decays(model: &CameraModel, seed: u64) -> Vec<Decay> {
     let simulation =
         Simulation::new(model.clone(), Scene::builtin("board-distances").unwrap(), seed).unwrap();
     let mut sweep = DistanceSweep::new("board", &CalibrateSettings::default());
-    support::render(&simulation).iter().for_each(|simulated| sweep.push(&simulated.frame).unwrap());
+    common::render(&simulation).iter().for_each(|simulated| sweep.push(&simulated.frame).unwrap());
     sweep.finish().decays
 }
 
@@ -129,7 +125,7 @@ fn the_spline_is_the_cameras_true_law_within_noise() {
     let mut scene = Scene::builtin("board-distances").unwrap();
     scene.runs[0].integration_times_us.retain(|time| *time > 4000.0);
     let simulation = Simulation::new(model.clone(), scene, 11).unwrap();
-    let frames = support::render(&simulation);
+    let frames = common::render(&simulation);
     let mut sweep = DistanceSweep::new("board", &CalibrateSettings::default());
     frames.iter().for_each(|simulated| sweep.push(&simulated.frame).unwrap());
     let (spline, _) =
@@ -185,8 +181,7 @@ fn every_pixel_is_scaled_by_the_law_and_flagged_outside_its_range() {
     };
     let channels = Channels::AMPLITUDE | Channels::DISTANCE;
     let standardizer = Standardizer::plan(&choice, Some(&calibration), channels).unwrap();
-    let mut out = Standardized::new(shape);
-    standardizer.apply(&frame, &mut out).unwrap();
+    let out = common::standardize::standardize(&standardizer, &frame);
     let [min_m, max_m] = spline.valid_distance_m.map(|end| end as f32);
     let (mut inside, mut outside) = (0, 0);
     for (index, &d) in distances.values().iter().enumerate() {
@@ -219,37 +214,6 @@ fn best_prefers_the_spline_and_paper_the_cubic() {
     assert_eq!(elsewhere.check().unwrap_err().field, "spline.reference_distance_m");
 }
 
-/// Calibrate and standardize with the program: the frequency comes from the recording.
-#[test]
-fn the_program_fits_and_uses_it() {
-    let folder = tempfile::tempdir().unwrap();
-    simulate(folder.path(), "board-distances-smoke");
-    let (board, file) = (folder.path().join("board-distances-smoke"), folder.path().join("CAMERA.json"));
-    let printed = run(&[&"calibrate", &"--distance-sweep", &board, &"-o", &file]);
-    assert!(printed.contains("spline, law over distance: "), "{printed}");
-    let written: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
-    let spline = &written["terms"]["spline"];
-    assert_eq!(spline["version"], 1);
-    assert_eq!(spline["coefficients"].as_array().unwrap().len(), 27);
-    for (options, term) in [
-        (&["--time", "none"][..], "spline"),
-        (&["--time", "none", "--distance", "spline"], "spline"),
-        (&["--time", "none", "--distance", "cubic"], "cubic"),
-    ] {
-        let out = folder.path().join(format!("out-{}-{term}", options.len()));
-        let mut args: Vec<&dyn AsRef<std::ffi::OsStr>> =
-            vec![&"standardize", &board, &"-c", &file, &"-o", &out];
-        args.extend(options.iter().map(|option| option as &dyn AsRef<std::ffi::OsStr>));
-        if options.len() == 4 {
-            args.push(&"--force");
-        }
-        run(&args);
-        let record: Value = serde_json::from_slice(&fs::read(out.join("recording.json")).unwrap()).unwrap();
-        let steps = record["standardization"]["steps"].as_array().unwrap();
-        assert_eq!(steps.iter().find(|step| step["effect"] == "distance").unwrap()["term"], term);
-    }
-}
-
 /// Five distances make a cubic and a warning.
 #[test]
 fn few_positions_are_a_warning() {
@@ -259,7 +223,7 @@ fn few_positions_are_a_warning() {
     let model = small(CameraModel::preset("sr3100").unwrap());
     let simulation = Simulation::new(model, scene, 1).unwrap();
     let mut sweep = DistanceSweep::new("board", &CalibrateSettings::default());
-    support::render(&simulation).iter().for_each(|simulated| sweep.push(&simulated.frame).unwrap());
+    common::render(&simulation).iter().for_each(|simulated| sweep.push(&simulated.frame).unwrap());
     let (calibration, report) =
         calibrate::fit(&CalibrateSettings::default(), None, vec![], vec![sweep.finish()]).unwrap();
     assert!(calibration.terms.cubic.is_some() && calibration.terms.spline.is_none());

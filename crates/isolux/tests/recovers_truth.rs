@@ -1,17 +1,15 @@
-//! The fits recover what the simulated camera is, within the noise that its frames carry, and equal a naive
-//! implementation of the paper.
+//! The fits recover what the simulated camera is, within the noise that its frames carry.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
+mod common;
 
+use common::naive_fit::{self, NaiveCubic, Weighting};
+use common::noise_theory::{ExpectedMean, mean_curve, rice_mean};
+use common::{builtin, calibrate, cropped, render, time_us};
 use isolux::calibrate::CalibrateSettings;
-use isolux::terms::lut::LutAnswer;
-use isolux::terms::{Cubic, Lut};
+use isolux::terms::Lut;
 use isolux::{Calibration, Window};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
-use support::naive_fit::{self, NaiveCubic, Weighting};
-use support::noise_theory::{ExpectedMean, mean_curve, rice_mean};
-use support::{builtin, calibrate, cropped, render, time_us};
 
 /// Standard errors that a deviation may have: 1 in 1.7 million for one comparison, and there are some hundred.
 const STANDARD_ERRORS: f64 = 5.0;
@@ -58,67 +56,6 @@ fn the_table_ends_at_the_peak(lut: &Lut, truth: &[ExpectedMean]) {
     let noise = STANDARD_ERRORS * last.standard_error_dn.hypot(peak.standard_error_dn);
     assert!(peak.expected_dn - last.expected_dn <= noise, "{end} µs, {}", peak.integration_time_us);
     assert!(end < truth[truth.len() - 1].integration_time_us, "the sweep goes on beyond the peak");
-}
-
-/// What was promised. It is needed where the camera delivers codes: the library averages the means of frames, in
-/// which unlike numbers of pixels carry the code, the naive version all pixels.
-const PROMISED: f64 = 2e-3;
-/// The same mean in f64 differs by the order of summation alone: fewer than 10⁵ terms of one sign, each rounded by
-/// ε/2 of a sum, twice over.
-const SUMMATION: f64 = 1e5 * f64::EPSILON;
-
-#[test]
-fn multipliers_equal_a_naive_implementation() {
-    let mut kinect = cropped("kinect2-like", 60, 80);
-    // Dead pixels that count, and a field so wide that its middle carries the code long before its corners.
-    (kinect.dead_pixel_fraction, kinect.intrinsics.fx, kinect.intrinsics.fy) = (0.01, 60.0, 60.0);
-    for model in [cropped("sr3100", 72, 88), cropped("o3d-like", 66, 88), kinect] {
-        let name = model.name.clone();
-        let tolerance = if model.saturated_amplitude.is_some() { PROMISED } else { SUMMATION };
-        let mut scene = settling_wall();
-        if model.saturated_amplitude.is_some() {
-            // Beyond, nearly every pixel of this camera carries its code.
-            scene.runs[0].integration_times_us.retain(|time| *time <= 38000.0);
-        }
-        let simulation = Simulation::new(model, scene, 3).unwrap();
-        let frames = render(&simulation);
-        let settings = CalibrateSettings { skip_frames: 2, ..CalibrateSettings::default() };
-        let calibration = calibrate(&settings, &frames, &[]);
-        let lut = lut_of(&calibration);
-        let plain: Vec<_> = frames.iter().map(|simulated| &simulated.frame).collect();
-        let naive = naive_fit::lut(&plain, 2, REFERENCE_US);
-        let times: Vec<f64> = naive.iter().map(|(time, _)| *time).collect();
-        assert_eq!(lut.integration_time_us, times, "{name}");
-        for &time in &times {
-            // At the samples, and half way to the next one.
-            for time in [time, (1.3 * time).min(times[times.len() - 1])] {
-                let LutAnswer::Inside(found) = lut.at(time) else { panic!("{name} {time}") };
-                let expected = naive_fit::log_log(&naive, time);
-                assert!((found / expected - 1.0).abs() < tolerance, "{name} {time}: {found} {expected}");
-            }
-        }
-    }
-}
-
-/// A wall at 14 times, with the frames in which the camera settles.
-fn settling_wall() -> Scene {
-    let text = r#"
-        version = 1
-        name = "settling-wall"
-        ambient = 0.5
-        [[object]]
-        name = "wall"
-        form = { rectangle = { size_m = [20.0, 20.0] } }
-        center_m = [0.0, 0.0, 0.9]
-        texture = { uniform = 0.7 }
-        [[run]]
-        integration_times_us = [
-            200.0, 500.0, 1000.0, 2000.0, 4000.0, 8200.0, 12000.0, 16000.0, 20000.0, 24000.0, 28000.0, 32000.0,
-            38000.0, 45000.0,
-        ]
-        frames_per_time = 4
-    "#;
-    Scene::from_toml("settling-wall", text).unwrap()
 }
 
 /// The SR-3100 without saturation, warm-up, dead pixels and ambient light, and of 40×40 pixels: what is left is
@@ -261,40 +198,5 @@ impl Normal {
             (self.0 >> 11) as f64 / (1u64 << 53) as f64
         };
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
-
-/// The two implementations of one least-squares problem differ by rounding: condition 10⁶ of the naive normal
-/// equations, 10⁻¹⁶ of f64.
-#[test]
-fn the_cubic_of_given_decays_equals_a_naive_implementation() {
-    let curve = |d: f64| 900.0 / (d * d * (1.0 + 0.002 / (d * d)).powi(2)) * (1.0 + 0.02 * (3.3 * d).cos());
-    let decay = |time: f64, from: f64, scale: f64| {
-        let points = (0..14).map(move |i| from + 0.18 * f64::from(i)).map(move |d| (d, scale * curve(d)));
-        (time, points.collect::<Vec<_>>())
-    };
-    // The last does not reach the reference.
-    let decays = [decay(1000.0, 0.3, 1.0), decay(4000.0, 0.5, 3.9), decay(16000.0, 0.9, 14.0)];
-    let library: Vec<_> = decays
-        .iter()
-        .map(|(time, points)| isolux::terms::cubic::Decay {
-            integration_time_us: Some(*time),
-            points: points
-                .iter()
-                .map(|&(distance_m, amplitude_dn)| isolux::terms::cubic::DecayPoint {
-                    distance_m,
-                    amplitude_dn,
-                })
-                .collect(),
-        })
-        .collect();
-    let (cubic, _) = Cubic::fit(&library, REFERENCE_M).unwrap();
-    let points: Vec<_> = decays.iter().map(|(_, points)| points.clone()).collect();
-    let naive = naive_fit::paper_cubic(&points, REFERENCE_M, Weighting::Relative);
-    assert_eq!(cubic.valid_distance_m, naive.range_m);
-    for step in 0..=50 {
-        let distance = 0.3 + (naive.range_m[1] - 0.3) * f64::from(step) / 50.0;
-        let found = naive_fit::polynomial(cubic.coefficients, distance) / naive.at(distance) - 1.0;
-        assert!(found.abs() < 1e-9, "{distance} m: {found:e}");
     }
 }

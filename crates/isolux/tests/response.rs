@@ -1,18 +1,16 @@
-//! The response on cameras that nobody has fitted it to: what the fits find against the truth, and how the program uses
+//! The response on cameras that nobody has fitted it to: what the fits find against the truth, and how a chain uses
 //! it. How much better images become: `crates/isolux-experiments/tests/response.rs`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
+mod common;
 
-use std::fs;
-
+use common::render;
+use common::standardize::{standardize, try_standardize};
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
 use isolux::standardize::{DistanceStep, SpecularStep, StandardizeError, TimeStep};
 use isolux::terms::response::{Response, ResponseTier};
-use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Shape, Standardized, Standardizer};
+use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Shape, Standardizer};
 use isolux_camera::{CameraModel, Scene, Simulation};
-use serde_json::Value;
-use support::{render, run};
 
 /// A small image of the built-in wall in this light, over 24 times evenly spread in ln t.
 fn wall(mut model: CameraModel, ambient: f64, longest_us: f64, seed: u64) -> Simulation {
@@ -120,10 +118,8 @@ fn the_bins_repair_the_distance() {
     let [with, without] =
         [DistanceStep::Square, DistanceStep::None].map(|step| plan(step, ResponseTier::PhaseSamples));
     let (mut raw, mut repaired, mut count) = (0.0, 0.0, 0.0f64);
-    let [mut far, mut near] = [(); 2].map(|()| Standardized::new(simulation.shape()));
     for simulated in &frames {
-        with.apply(&simulated.frame, &mut far).unwrap();
-        without.apply(&simulated.frame, &mut near).unwrap();
+        let [far, near] = [&with, &without].map(|plan| standardize(plan, &simulated.frame));
         let bins = simulated.frame.phase_samples.as_ref().unwrap();
         for i in 0..simulation.shape().pixels() {
             let highest = bins.iter().map(|bin| f64::from(bin.values()[i])).fold(0.0, f64::max);
@@ -197,7 +193,6 @@ fn what_the_response_cannot_tell_is_refused() {
     };
     let frames = render(&simulation);
     let last = &frames[frames.len() - 1].frame;
-    let mut out = Standardized::new(simulation.shape());
     for tier in [
         ResponseTier::PhaseSamples,
         ResponseTier::Intensity,
@@ -207,7 +202,7 @@ fn what_the_response_cannot_tell_is_refused() {
     ] {
         let standardizer = plan(tier);
         // The whole wall is clipped at the end of the sweep.
-        standardizer.apply(last, &mut out).unwrap();
+        let out = standardize(&standardizer, last);
         if matches!(tier, ResponseTier::PhaseSamples | ResponseTier::Intensity | ResponseTier::Scalar) {
             assert!(out.amplitude.values().iter().all(|value| value.is_nan()), "{tier:?}");
         }
@@ -217,52 +212,17 @@ fn what_the_response_cannot_tell_is_refused() {
         // A pixel that the reader calls saturated has no linear value.
         let mut first = frames[0].frame.clone();
         first.flags.values_mut()[5] |= PixelFlags::SATURATED;
-        let summary = standardizer.apply(&first, &mut out).unwrap();
+        let out = standardize(&standardizer, &first);
+        let summary = out.summary;
         assert_eq!(out.amplitude.values()[5].is_nan(), tier != ResponseTier::Scalar, "{tier:?}");
         assert!(summary.valid * 10 > summary.pixels * 9, "{tier:?} {summary:?}");
     }
     let mut other = Frame::new(Shape::new(2, 2));
     other.integration_time_us = isolux::IntegrationTime::PerFrame(1000.0);
-    let error = plan(ResponseTier::Pixel).apply(&other, &mut out).unwrap_err();
+    let error = try_standardize(&plan(ResponseTier::Pixel), &other).unwrap_err();
     assert!(matches!(error, StandardizeError::AnotherScene { .. }), "{error}");
-    let error = plan(ResponseTier::Intensity).apply(&other, &mut out).unwrap_err();
+    let error = try_standardize(&plan(ResponseTier::Intensity), &other).unwrap_err();
     assert_eq!(error, StandardizeError::FillMissing { channel: "intensity" });
-}
-
-/// Simulate, calibrate and standardize with the program; the file is checked as any other.
-#[test]
-fn the_program_fits_and_uses_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let (sweep, file) = (folder.path().join("wall"), folder.path().join("CAMERA.json"));
-    run(&[&"simulate", &"wall-sweep-smoke", &"-o", &sweep, &"--phase-samples", &"--ambient", &"1.5"]);
-    let record: Value = serde_json::from_slice(&fs::read(sweep.join("recording.json")).unwrap()).unwrap();
-    assert_eq!(record["simulation"]["ambient"], 1.5);
-    let printed = run(&[&"calibrate", &"--exposure-sweep", &sweep, &"-o", &file]);
-    for tier in ["scalar", "amplitude", "pixel (that scene)", "intensity", "phase_samples"] {
-        assert!(printed.contains(&format!("\n  {tier}  ")), "{tier}: {printed}");
-    }
-    let written: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
-    let response = &written["terms"]["response"];
-    assert_eq!(response["pixel"]["full_well_time_us"].as_array().unwrap().len(), 144);
-    assert_eq!(response["phase_samples"]["modulation_frequency_hz"], 20e6);
-    let read: Calibration = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
-    assert_eq!(read.check(), Ok(()));
-    for (options, expected) in [
-        (&[][..], "tier phase_samples: amplitude and distance"),
-        (&["--time", "response", "--response-tier", "intensity"], "tier intensity: "),
-        (&["--time", "response", "--response-tier", "pixel"], "tier pixel: the static scene of the sweep"),
-        (&["--time", "response", "--response-tier", "scalar"], "tier scalar: 1 at 8200 µs"),
-        (&["--time", "lut"], "1 at 8200 µs"),
-    ] {
-        let out = folder.path().join("out");
-        let mut args: Vec<&dyn AsRef<std::ffi::OsStr>> =
-            vec![&"standardize", &sweep, &"-c", &file, &"-o", &out, &"--distance", &"none", &"--force"];
-        args.extend(options.iter().map(|option| option as &dyn AsRef<std::ffi::OsStr>));
-        run(&args);
-        let record: Value = serde_json::from_slice(&fs::read(out.join("recording.json")).unwrap()).unwrap();
-        let step = &record["standardization"]["steps"][0];
-        assert!(step["parameters"].as_str().unwrap().contains(expected), "{step}");
-    }
 }
 
 /// Hand-edited files are refused by the field, not obeyed.

@@ -1,15 +1,12 @@
-//! What the proofs share: simulated sweeps, the calibration fitted on them, the program itself, and naive
-//! versions of the fits and of the chain.
+//! What the proofs share: simulated sweeps, the calibration fitted on them, standardized frames, and naive versions of
+//! the fits and of the chain.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses its own part")]
 
 pub mod naive_chain;
 pub mod naive_fit;
 pub mod noise_theory;
+pub mod standardize;
 pub mod strategies;
-
-use std::ffi::OsStr;
-use std::path::Path;
-use std::process::{Command, Output};
 
 use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureSweep, fit};
 use isolux::{Calibration, Frame};
@@ -58,24 +55,4 @@ pub fn time_us(frame: &Frame) -> f64 {
         isolux::IntegrationTime::PerFrame(time_us) => time_us,
         _ => panic!("no single integration time"),
     }
-}
-
-/// Runs the program.
-pub fn isolux(args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_isolux")).args(args).output().unwrap()
-}
-
-/// Runs the program, which must succeed without a word of a panic; returns what it printed.
-pub fn run(args: &[&dyn AsRef<OsStr>]) -> String {
-    let output = isolux(args.iter().map(|arg| arg.as_ref()));
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    let words: Vec<_> = args.iter().map(|arg| arg.as_ref().to_string_lossy()).collect();
-    assert_eq!(output.status.code(), Some(0), "isolux {}: {stderr}", words.join(" "));
-    assert!(!stderr.contains("panicked"), "isolux {}: {stderr}", words.join(" "));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Simulates a scene into `folder`/`name` with the program.
-pub fn simulate(folder: &Path, scene: &str) {
-    run(&[&"simulate", &scene, &"-o", &folder.join(scene)]);
 }
