@@ -1,12 +1,12 @@
 //! The white squares of a real camera's checkerboard in frames that the calibration has not seen; see
-//! `isolux_paper::beyond::checkerboard`. Skips where the recording is not there.
+//! `isolux_experiments::unseen::checkerboard`. Skips where the recording is not there.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 #![allow(clippy::print_stdout, reason = "the figures are what it is for")]
 
 use std::path::PathBuf;
 
 use isolux::{Channels, Frame};
-use isolux_paper::beyond::checkerboard::{Protocol, spreads};
+use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
 
 #[test]
 fn white_squares_are_one_material_over_distance_tilt_and_place() {

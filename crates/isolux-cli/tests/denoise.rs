@@ -1,13 +1,11 @@
-//! Denoising the distance through the program. What it is worth on simulated frames: `isolux-paper`'s
+//! Denoising the distance through the program. What it is worth on simulated frames: `isolux-experiments`'s
 //! `tests/denoise.rs`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
 mod common;
-mod support;
 
 use common::Sandbox;
-use isolux::standardize::{DenoiseStep, TimeStep};
-use isolux::{Channels, Choice, DenoiseRule, Plane, Standardized, Standardizer};
+use isolux::DenoiseRule;
 
 const RULES: [DenoiseRule; 4] =
     [DenoiseRule::Median, DenoiseRule::Wiener, DenoiseRule::Plane, DenoiseRule::Temporal];
@@ -51,35 +49,4 @@ fn the_program_denoises_alike_with_any_number_of_threads() {
             .stderr
             .contains("nothing to denoise")
     );
-}
-
-/// What counts as outside the calibrated distances is decided by the denoised distance.
-#[test]
-fn the_range_is_that_of_the_denoised_distance() {
-    use isolux::{Frame, PixelFlags, Shape};
-    let shape = Shape::new(9, 9);
-    let choice = Choice {
-        denoise: Some(DenoiseStep::Smooth(DenoiseRule::Median)),
-        time: Some(TimeStep::None),
-        ..Choice::default()
-    };
-    let channels = Channels::AMPLITUDE | Channels::DISTANCE;
-    let calibration = support::strategies::calibration();
-    let mut frame = Frame::new(shape);
-    frame.amplitude.fill(100.0);
-    // One pixel beyond the calibrated 3 m.
-    frame.distance_m =
-        Some(Plane::from_fn(shape, |row, column| if (row, column) == (4, 4) { 3.5 } else { 2.0 }));
-    let outside = |choice| {
-        let mut out = Standardized::new(shape);
-        let standardizer = Standardizer::plan(&choice, Some(&calibration), channels).unwrap();
-        let summary = standardizer.apply(&frame, &mut out).unwrap();
-        assert_eq!(
-            summary.distance_extrapolated > 0,
-            out.flags.get(4, 4).unwrap().contains(PixelFlags::DISTANCE_OUT_OF_RANGE)
-        );
-        summary.distance_extrapolated
-    };
-    assert_eq!(outside(Choice { denoise: None, ..choice }), 1);
-    assert_eq!(outside(choice), 0);
 }

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 #![allow(clippy::print_stdout, reason = "a test that skips says so")]
 
-mod support;
+mod common;
 
 use std::path::{Path, PathBuf};
 
+use common::run;
 use isolux::{Channels, Frame, IntegrationTime, PixelFlags, Plane};
 use isolux_io::Recording;
-use support::run;
 
 fn data() -> Option<PathBuf> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));

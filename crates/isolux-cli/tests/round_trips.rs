@@ -1,16 +1,19 @@
 //! What is written reads back bit by bit, and does not depend on the number of threads.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
+mod common;
+#[path = "../../isolux/tests/common/strategies.rs"]
+#[allow(dead_code, unreachable_pub, reason = "other tests use the rest of it")]
+mod strategies;
 
 use std::path::Path;
 
+use common::run;
 use isolux::calibration::{NoiseFloor, Terms};
 use isolux::{Calibration, Frame, IntegrationTime, Reference};
 use isolux_io::{ChannelSpec, ElementType, RecordingInfo, RecordingWriter};
 use proptest::prelude::*;
-use support::run;
-use support::strategies::{
+use strategies::{
     CHANNELS, PIXELS, SHAPE, bits, calibration, cases, cubics, frames, luts, noises, responses, splines,
     words,
 };

@@ -1,10 +1,10 @@
 //! `calibrate --target` and `standardize --profile --angle` through the program.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
-mod support;
+mod common;
 
+use common::run;
 use isolux_io::read_calibration;
-use support::run;
 
 #[test]
 fn a_target_gives_terms_that_standardize_uses_by_name() {

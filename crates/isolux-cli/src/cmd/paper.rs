@@ -8,7 +8,7 @@ use crate::failure::{Failure, Outcome};
 
 pub(crate) fn run(args: &PaperArgs) -> Outcome {
     let progress = console::steps();
-    let page = isolux_paper::page(args.seed, &mut |step| progress.set_message(step.to_owned()));
+    let page = isolux_experiments::paper::page(args.seed, &mut |step| progress.set_message(step.to_owned()));
     progress.finish_and_clear();
     let page = page.map_err(Failure::data)?;
     let written = isolux_report::write_report(&page, &args.output, "index.html").map_err(Failure::data)?;

@@ -22,7 +22,7 @@ pub use npy::{Array, header};
 pub use readers::{READERS, refused_by};
 #[cfg(target_os = "linux")]
 pub use resources::{limit_address_space, peak_memory};
-pub use run::Run;
+pub use run::{Run, run, simulate};
 pub use standardized::{bits, get, mask, standardize};
 
 /// Channels by name.

@@ -1,5 +1,7 @@
 //! What became of a command.
 
+use std::ffi::OsStr;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// A finished command.
@@ -69,4 +71,18 @@ impl Run {
         assert!(self.stdout.contains(part), "no \"{part}\" in {self:#?}");
         self
     }
+}
+
+/// Runs the program, which must succeed, whatever it remarks; returns what it printed.
+pub fn run(args: &[&dyn AsRef<OsStr>]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_isolux"));
+    command.args(args.iter().map(|arg| arg.as_ref()));
+    let run = Run::new(command);
+    assert_eq!(run.code, Some(0), "{run:#?}");
+    run.stdout
+}
+
+/// Simulates a scene into `folder`/`name` with the program.
+pub fn simulate(folder: &Path, scene: &str) {
+    run(&[&"simulate", &scene, &"-o", &folder.join(scene)]);
 }

@@ -2,8 +2,8 @@
 
 mod real;
 
-use isolux_paper::beyond::figure::Figure;
-use isolux_paper::beyond::figures;
+use isolux_experiments::unseen::figure::Figure;
+use isolux_experiments::unseen::figures;
 
 use crate::args::FiguresArgs;
 use crate::console;

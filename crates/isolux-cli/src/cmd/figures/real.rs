@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use isolux::{Channels, Frame};
+use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
+use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
 use isolux_io::Recording;
-use isolux_paper::beyond::checkerboard::{Protocol, spreads};
-use isolux_paper::beyond::figure::{Aim, Figure, Unit};
 
 use crate::cmd::diagnose::diagnose;
 use crate::failure::{Failure, Outcome};

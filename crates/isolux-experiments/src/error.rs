@@ -1,0 +1,40 @@
+//! What can go wrong in an experiment.
+
+use isolux::calibrate::CalibrateError;
+use isolux::standardize::{PlanError, StandardizeError};
+use isolux_camera::CameraError;
+
+/// Why an experiment failed. None of these depends on the user's data: each would be a defect.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExperimentError {
+    /// The simulated camera.
+    #[error("simulated camera: {0}")]
+    Camera(#[from] CameraError),
+    /// The fits.
+    #[error("calibration: {0}")]
+    Calibrate(#[from] CalibrateError),
+    /// The chain.
+    #[error("plan: {0}")]
+    Plan(#[from] PlanError),
+    /// A frame.
+    #[error("standardize: {0}")]
+    Standardize(#[from] StandardizeError),
+    /// A bracket.
+    #[error("merge: {0}")]
+    Merge(#[from] isolux::standardize::MergeError),
+    /// Planes that do not fit together.
+    #[error("shape: {0}")]
+    Shape(#[from] isolux::ShapeError),
+    /// A scene without what the experiment looks for.
+    #[error("scene `{scene}`: {missing} expected")]
+    Scene {
+        /// The scene.
+        scene: &'static str,
+        /// What is not there.
+        missing: &'static str,
+    },
+    /// A detector of the image library refused its input.
+    #[error("image library: {0}")]
+    Detector(String),
+}

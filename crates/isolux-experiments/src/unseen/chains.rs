@@ -1,0 +1,88 @@
+//! The chains that are compared: the paper's, the textbook's, and ours.
+
+use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::{Channels, Choice, DenoiseRule, Standardizer};
+
+use super::held_out::HeldOut;
+use crate::error::ExperimentError;
+
+/// What a recording offers besides amplitude, distance and integration time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// Nothing.
+    Amplitude,
+    /// The DC image.
+    Intensity,
+    /// The raw bins.
+    PhaseSamples,
+}
+
+/// One chain, without a step for highlights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chain {
+    /// As a table names it.
+    pub name: &'static str,
+    /// What it may read.
+    pub evidence: Evidence,
+    time: TimeStep,
+    distance: DistanceStep,
+    denoise: DenoiseStep,
+}
+
+const fn chain(name: &'static str, time: TimeStep, distance: DistanceStep) -> Chain {
+    Chain { name, evidence: Evidence::Amplitude, time, distance, denoise: DenoiseStep::None }
+}
+
+const fn ours(name: &'static str, time: TimeStep, evidence: Evidence) -> Chain {
+    let denoise = DenoiseStep::Smooth(DenoiseRule::Wiener);
+    Chain { evidence, denoise, ..chain(name, time, DistanceStep::Spline) }
+}
+
+/// Nothing but the camera's image.
+pub const RAW: Chain = chain("raw", TimeStep::None, DistanceStep::None);
+/// What one writes in NumPy.
+pub const TEXTBOOK: Chain = chain("A d²/t", TimeStep::Linear, DistanceStep::Square);
+/// The paper's eq. 5 with linear time.
+pub const EQ5: Chain = chain("eq. 5, linear time", TimeStep::Linear, DistanceStep::Eq5);
+/// The paper's.
+pub const PAPER: Chain = chain("the paper (lut, cubic)", TimeStep::Lut, DistanceStep::Cubic);
+/// Ours for cameras that deliver no more than amplitude and distance.
+pub const FROM_AMPLITUDE: Chain =
+    ours("isolux, amplitude alone (lut, wiener, spline)", TimeStep::Lut, Evidence::Amplitude);
+/// Ours with the DC image.
+pub const FROM_INTENSITY: Chain =
+    ours("isolux, intensity (response, wiener, spline)", TimeStep::Response, Evidence::Intensity);
+/// Ours with the raw bins.
+pub const FROM_BINS: Chain =
+    ours("isolux, raw bins (response, wiener, spline)", TimeStep::Response, Evidence::PhaseSamples);
+/// Everybody.
+pub const ALL: [Chain; 7] = [RAW, EQ5, TEXTBOOK, PAPER, FROM_AMPLITUDE, FROM_INTENSITY, FROM_BINS];
+
+impl Chain {
+    /// Whether it is one of ours.
+    #[must_use]
+    pub fn is_ours(&self) -> bool {
+        [FROM_AMPLITUDE, FROM_INTENSITY, FROM_BINS].contains(self)
+    }
+
+    /// Plans the chain for frames of a held-out camera, with the calibration that such recordings allow.
+    ///
+    /// # Errors
+    /// [`ExperimentError::Plan`] when the calibration lacks a term.
+    pub fn plan(&self, held_out: &HeldOut) -> Result<Standardizer, ExperimentError> {
+        let choice = Choice {
+            time: Some(self.time),
+            distance: Some(self.distance),
+            denoise: Some(self.denoise),
+            specular: Some(SpecularStep::None),
+            ..Choice::default()
+        };
+        let (calibration, besides) = match self.evidence {
+            Evidence::Amplitude => (&held_out.from_amplitude, Channels::empty()),
+            Evidence::Intensity => (&held_out.calibration, Channels::INTENSITY),
+            Evidence::PhaseSamples => (&held_out.calibration, Channels::PHASE_SAMPLES),
+        };
+        let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
+        Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
+    }
+}

@@ -1,0 +1,91 @@
+//! Cameras that no preset is like, calibrated from sweeps as a user would record them. What is measured on them
+//! afterwards are other frames than those of the fit.
+
+use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureFit, ExposureSweep, Measurements};
+use isolux::standardize::FrameLineariser;
+use isolux::{Calibration, Channels};
+use isolux_camera::scene::run::RegisterRange;
+use isolux_camera::{CameraModel, Scene, Simulation};
+
+use crate::error::ExperimentError;
+use crate::measure::for_each;
+
+/// Seeds of the cameras, which no constant of the library was chosen on.
+pub const CAMERAS: [u64; 3] = [101, 102, 103];
+/// Seed of the noise of the frames that are fitted on.
+const FITTED: u64 = 1;
+/// Seed of the noise of the frames that are measured on.
+pub(super) const MEASURED: u64 = 2;
+
+/// A camera and its calibration.
+#[derive(Clone, Debug)]
+pub struct HeldOut {
+    /// The camera.
+    pub model: CameraModel,
+    /// Fitted on a wall over its register and a board over distances.
+    pub calibration: Calibration,
+    /// The same as a camera gives it that delivers amplitude and distance alone: the spline is not that of linear
+    /// amplitudes.
+    pub from_amplitude: Calibration,
+}
+
+impl HeldOut {
+    /// Simulates the sweeps of camera `seed` and fits all that they determine.
+    ///
+    /// # Errors
+    /// [`ExperimentError`], which no seed should bring about.
+    pub fn new(seed: u64) -> Result<Self, ExperimentError> {
+        let model = CameraModel::random(seed);
+        let settings = CalibrateSettings {
+            modulation_frequency_hz: Some(model.modulation_frequency_hz),
+            ..CalibrateSettings::default()
+        };
+        let mut wall = ExposureSweep::new("wall-sweep", &settings);
+        for_each(&Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?, |_, simulated| {
+            Ok(wall.push(&simulated.frame)?)
+        })?;
+        let exposure = ExposureFit::new(&settings, vec![wall.finish()])?;
+        let channels = Channels::PHASE_SAMPLES | Channels::INTENSITY;
+        let mut lineariser =
+            exposure.response().and_then(|response| FrameLineariser::new(response, channels));
+        let mut board = DistanceSweep::new("board-distances", &settings);
+        let mut linear_board = board.clone();
+        let scene = Scene::builtin("board-distances")?;
+        for_each(&Simulation::new(cropped(&model), scene, FITTED)?, |_, simulated| {
+            board.push(&simulated.frame)?;
+            if let Some(lineariser) = &mut lineariser {
+                let mut frame = simulated.frame.clone();
+                lineariser.linearise(&mut frame)?;
+                linear_board.push(&frame)?;
+            }
+            Ok(())
+        })?;
+        let delivered = Measurements { distance_sweeps: vec![board.finish()], ..Measurements::default() };
+        let linear = lineariser.map(|_| linear_board.finish());
+        let measured =
+            Measurements { linear_distance_sweeps: linear.into_iter().collect(), ..delivered.clone() };
+        let name = Some(model.name.clone());
+        let (from_amplitude, _) = exposure.clone().and(&settings, name.clone(), delivered)?;
+        let (calibration, _) = exposure.and(&settings, name, measured)?;
+        Ok(Self { model, calibration, from_amplitude })
+    }
+}
+
+/// The wall at about fifty times of the camera's register.
+fn wall_scene(model: &CameraModel) -> Result<Scene, ExperimentError> {
+    let mut scene = Scene::builtin("wall-sweep")?;
+    let last = model.integration_register.maximum;
+    for run in &mut scene.runs {
+        run.registers = Some(RegisterRange { first: 0, last, step: (last / 50).max(1) });
+    }
+    Ok(scene)
+}
+
+/// The camera's image around the principal point alone: all that a board in the centre needs.
+pub(super) fn cropped(model: &CameraModel) -> CameraModel {
+    const SIDE: usize = 40;
+    let mut model = CameraModel { height: SIDE, width: SIDE, ..model.clone() };
+    let centre = (SIDE - 1) as f64 / 2.0;
+    (model.intrinsics.cx, model.intrinsics.cy) = (centre, centre);
+    model
+}
