@@ -59,14 +59,6 @@ pub enum ReportError {
     /// A PNG could not be made.
     #[error("cannot make a PNG: {0}")]
     Png(#[from] png::EncodingError),
-    /// A chart could not be drawn.
-    #[error("cannot draw the chart `{id}`: {reason}")]
-    Drawing {
-        /// Id of the chart.
-        id: String,
-        /// What the plotting library says.
-        reason: String,
-    },
     /// The file name of a report is none.
     #[error("`{found}` is no name for the page: a plain file name such as `report.html` expected")]
     FileName {

@@ -3,6 +3,7 @@
 use crate::colours;
 use crate::error::ReportError;
 use crate::markup::{Base64, Escaped, put};
+use crate::numbers::scientific;
 use crate::page::Picture;
 use crate::png;
 
@@ -87,7 +88,7 @@ fn short(value: f32, span: f32) -> String {
         return "0".to_owned();
     }
     if !(1e-3..1e6).contains(&value.abs().max(span)) {
-        return crate::chart::scientific(f64::from(value), 2).replace(".00×", "×");
+        return scientific(f64::from(value), 2).replace(".00×", "×");
     }
     let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");

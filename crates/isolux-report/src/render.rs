@@ -1,24 +1,17 @@
 //! The page around the blocks.
 
-use crate::chart;
+use crate::chart::put_chart;
 use crate::check::check;
+use crate::claims::put_claims;
+use crate::companions::Companions;
 use crate::error::ReportError;
 use crate::markup::{Escaped, put};
-use crate::page::{Block, Chart, Claim, Page, Section, Verdict};
+use crate::page::{Block, Page, Section};
 use crate::picture::put_pictures;
 use crate::table::put_table;
 
 const STYLE: &str = include_str!("assets/page.css");
 const SCRIPT: &str = include_str!("assets/page.js");
-
-/// Whether the files of [`crate::write_report`] lie beside the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Companions {
-    /// `data/ID.csv` and `pictures/ID.png` are there: figures link to them.
-    Beside,
-    /// The page is all there is: no links to files.
-    Absent,
-}
 
 /// A page as one HTML document that needs nothing else and asks no network, with links to the CSV files that
 /// [`crate::write_report`] lays beside it. The same page gives the same bytes.
@@ -27,8 +20,8 @@ pub enum Companions {
 ///
 /// # Errors
 /// [`ReportError::DuplicateId`], [`ReportError::InvalidId`], [`ReportError::RowLength`] and
-/// [`ReportError::PictureShape`] name what is wrong with the page; [`ReportError::Png`] and
-/// [`ReportError::Drawing`] pass on what the libraries refuse.
+/// [`ReportError::PictureShape`] name what is wrong with the page; [`ReportError::Png`] passes on what the encoder
+/// refuses.
 pub fn render(page: &Page) -> Result<String, ReportError> {
     render_with(page, Companions::Beside)
 }
@@ -90,7 +83,7 @@ fn put_section(out: &mut String, section: &Section, companions: Companions) -> R
                 put_paragraphs(out, text, "");
                 put!(out, "</blockquote>\n<figcaption>{}</figcaption>\n</figure>\n", Escaped(source));
             }
-            Block::Chart(chart) => put_chart_figure(out, chart, companions)?,
+            Block::Chart(chart) => put_chart(out, chart, companions),
             Block::Pictures(pictures) => put_pictures(out, pictures)?,
             Block::Table(table) => put_table(out, table, companions),
             Block::Claims(claims) => put_claims(out, claims),
@@ -109,74 +102,4 @@ fn put_paragraphs(out: &mut String, text: &str, class: &str) {
             _ => put!(out, "<p class=\"{class}\">{}</p>\n", Escaped(paragraph)),
         }
     }
-}
-
-fn put_chart_figure(out: &mut String, chart: &Chart, companions: Companions) -> Result<(), ReportError> {
-    put!(out, "<figure class=\"chart\" id=\"{}\">\n", chart.id);
-    chart::put_chart(out, chart)?;
-    put!(out, "<figcaption>{}", Escaped(&chart.caption));
-    if let Some(note) = chart::left_out(chart) {
-        put!(out, " <span class=\"note\">{note}</span>");
-    }
-    put_csv_link(out, &chart.id, companions);
-    out.push_str("</figcaption>\n</figure>\n");
-    Ok(())
-}
-
-/// A link to the numbers of a figure.
-pub(crate) fn put_csv_link(out: &mut String, id: &str, companions: Companions) {
-    if companions == Companions::Beside {
-        put!(
-            out,
-            " <a class=\"file\" href=\"data/{id}.csv\" download=\"{id}.csv\" \
-             title=\"All digits, in the folder data beside this page\">CSV</a>"
-        );
-    }
-}
-
-fn put_claims(out: &mut String, claims: &[Claim]) {
-    if claims.is_empty() {
-        return;
-    }
-    put_tally(out, claims);
-    out.push_str("<ul class=\"claims\">\n");
-    for claim in claims {
-        let (class, symbol, word, why) = match &claim.verdict {
-            Verdict::Holds => ("holds", "✓", "holds", None),
-            Verdict::Fails(why) => ("fails", "✗", "fails", Some(why)),
-            Verdict::Open(why) => ("open", "?", "open", Some(why)),
-        };
-        put!(
-            out,
-            "<li class=\"{class}\" id=\"claim:{0}\" data-claim=\"{0}\" data-value=\"{1}\">\n\
-             <p class=\"verdict\"><span aria-hidden=\"true\">{symbol}</span> {word}</p>\n\
-             <div>\n<p class=\"statement\">{2}</p>\n<p class=\"measured\">{3}</p>\n",
-            claim.id,
-            crate::csv::number(claim.value),
-            Escaped(&claim.statement),
-            Escaped(&claim.measured)
-        );
-        if let Some(why) = why.filter(|why| !why.is_empty()) {
-            put!(out, "<p class=\"why\">Why: {}</p>\n", Escaped(why));
-        }
-        out.push_str("</div>\n</li>\n");
-    }
-    out.push_str("</ul>\n");
-}
-
-/// How many of several statements hold.
-fn put_tally(out: &mut String, claims: &[Claim]) {
-    if claims.len() < 2 {
-        return;
-    }
-    let count = |which: fn(&Verdict) -> bool| claims.iter().filter(|claim| which(&claim.verdict)).count();
-    let counts = [
-        (count(|verdict| matches!(verdict, Verdict::Holds)), "holds", "hold"),
-        (count(|verdict| matches!(verdict, Verdict::Fails(_))), "fails", "fail"),
-        (count(|verdict| matches!(verdict, Verdict::Open(_))), "is open", "are open"),
-    ];
-    let told = counts.iter().filter(|(count, ..)| *count > 0);
-    let words: Vec<String> =
-        told.map(|(count, one, more)| format!("{count} {}", if *count == 1 { one } else { more })).collect();
-    put!(out, "<p class=\"tally\">Of {} statements {}.</p>\n", claims.len(), words.join(", "));
 }

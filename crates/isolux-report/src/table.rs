@@ -1,9 +1,9 @@
 //! Tables: read without a script, sorted and copied with it.
 
-use crate::chart::scientific;
+use crate::companions::{Companions, put_csv_link};
 use crate::markup::{Escaped, put};
+use crate::numbers::scientific;
 use crate::page::{Cell, Table};
-use crate::render::{Companions, put_csv_link};
 
 /// Most decimals of an f64 that mean anything.
 const DECIMALS: usize = 17;

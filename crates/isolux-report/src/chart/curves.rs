@@ -1,7 +1,7 @@
 //! What of a series is drawn: lines cut at the frame and at gaps, markers inside the frame.
 
 use super::scale::Extent;
-use crate::page::{Series, Stroke};
+use crate::page::{Chart, Series, Stroke};
 
 /// A place in the frame: 0 to 1 along either axis.
 pub(super) type Place = (f64, f64);
@@ -18,6 +18,13 @@ pub(super) struct Curve {
     pub(super) markers: Vec<Place>,
     /// Few markers along a line, so that it is told from others without its colour.
     pub(super) keys: Vec<Place>,
+}
+
+/// Which of the lines with its stroke a series is, and how many there are.
+pub(super) fn turn(chart: &Chart, index: usize) -> (usize, usize) {
+    let stroke = chart.series[index].stroke;
+    let same = |until: usize| chart.series[..until].iter().filter(|series| series.stroke == stroke).count();
+    (same(index), same(chart.series.len()))
 }
 
 /// Places of a series. `turn` of `turns` staggers the keys of lines that share a stroke; none when it is alone.

@@ -1,163 +1,176 @@
-//! One chart as SVG, laid out for one width.
+//! One chart as SVG elements, from its layout.
 
-use std::cell::RefCell;
-use std::rc::Rc;
-
-use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
-use plotters::coord::Shift;
-use plotters::coord::cartesian::Cartesian2d;
-use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{Circle, EmptyElement, PathElement, Polygon, Text};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoFont, ShapeStyle, TextStyle};
-
-use super::backend::{Canvas, Role, StyledSvg, UNITS};
-use super::curves::{Curve, Place};
+use super::curves::{Curve, Place, inside};
 use super::layout::Layout;
 use super::marker;
-use super::scale::PlacedAxis;
+use super::scale::Extent;
+use super::svg::{Point, put_line, put_markers, put_text, units};
+use super::text::Anchor;
+use super::ticks::Ticks;
 use crate::markup::{Escaped, put};
-use crate::page::{Chart, MarkAxis, Stroke};
+use crate::page::{Chart, MarkAxis, Series, Stroke};
 
-type Area = DrawingArea<StyledSvg, Shift>;
-type Frame<'a> = ChartContext<'a, StyledSvg, Cartesian2d<PlacedAxis, PlacedAxis>>;
-type Shared = Rc<RefCell<Canvas>>;
-/// What the plotting library says when it cannot draw.
-type Drawn<T = ()> = Result<T, String>;
+/// Length of the mark of a tick, pixels.
+const TICK: f64 = 4.0;
+/// From an axis to the labels of its ticks, pixels.
+const TICK_LABEL: f64 = 8.0;
 
-/// The elements inside the `<svg>` of a chart.
-pub(super) fn draw(chart: &Chart, layout: &Layout) -> Drawn<String> {
-    let shared = Shared::default();
-    let size = (units(layout.width) as u32, units(layout.height) as u32);
-    let area = StyledSvg::new(size, Rc::clone(&shared)).into_drawing_area();
-    let mut frame = draw_axes(&area, layout)?;
-    draw_labels(&area, layout)?;
-    draw_mark_lines(&mut frame, chart, layout)?;
-    for (index, curve) in layout.curves.iter().enumerate() {
-        draw_curve(&mut frame, &shared, chart, index, curve)?;
+/// Appends the elements inside the `<svg>` of a chart.
+pub(super) fn put_drawing(out: &mut String, chart: &Chart, layout: &Layout) {
+    let frame = Frame::of(layout);
+    put_axes(out, layout, &frame);
+    put_axis_labels(out, layout);
+    put_mark_lines(out, chart, layout, &frame);
+    for (index, (series, curve)) in chart.series.iter().zip(&layout.curves).enumerate() {
+        put_curve(out, index, series, curve, &frame);
     }
-    draw_mark_labels(&area, layout)?;
+    for label in &layout.mark_labels {
+        put_text_at(out, "mark-label", &label.text, label.at, label.anchor);
+    }
     if layout.curves.iter().all(|curve| curve.lines.is_empty() && curve.markers.is_empty()) {
         let middle = (layout.left + layout.plot_width / 2.0, layout.top + layout.plot_height / 2.0);
-        draw_text(&area, "no values to draw", Role::Label, middle, HPos::Center)?;
+        put_text_at(out, "label", "no values to draw", middle, Anchor::Middle);
     }
-    let svg = shared.borrow_mut().take();
-    Ok(svg)
 }
 
-/// Pixels as drawing units.
-fn units(pixels: f64) -> i32 {
-    (pixels * f64::from(UNITS)).round() as i32
+/// The outermost drawing units that data may take. The axes stand one unit outside, so that they cover none.
+struct Frame {
+    left: i32,
+    top: i32,
+    right: i32,
+    bottom: i32,
 }
 
-fn told(error: impl std::fmt::Display) -> String {
-    error.to_string()
+impl Frame {
+    fn of(layout: &Layout) -> Self {
+        Self {
+            left: units(layout.left),
+            top: units(layout.top),
+            right: units(layout.left + layout.plot_width) - 1,
+            bottom: units(layout.top + layout.plot_height) - 1,
+        }
+    }
+
+    fn x(&self, place: f64) -> i32 {
+        between(self.left, self.right, place)
+    }
+
+    fn y(&self, place: f64) -> i32 {
+        between(self.bottom, self.top, place)
+    }
+
+    fn point(&self, (x, y): Place) -> Point {
+        (self.x(x), self.y(y))
+    }
 }
 
-fn shape(role: Role) -> ShapeStyle {
-    ShapeStyle::from(&role.colour()).filled()
+/// The unit at a place from 0, the start, to 1, the end.
+fn between(start: i32, end: i32, place: f64) -> i32 {
+    (f64::from(start) + place * f64::from(end - start)).round() as i32
 }
 
-/// The size matters only for the library's layout: what is seen is the style sheet's.
-fn letters(role: Role) -> TextStyle<'static> {
-    let mut style = TextStyle::from(("sans-serif", 13 * UNITS).into_font());
-    style.color = role.colour().to_backend_color();
-    style
+fn put_text_at(out: &mut String, class: &str, text: &str, (x, y): (f64, f64), anchor: Anchor) {
+    put_text(out, class, text, (units(x), units(y)), anchor);
 }
 
-fn draw_axes<'a>(area: &'a Area, layout: &Layout) -> Drawn<Frame<'a>> {
-    let mut frame = ChartBuilder::on(area)
-        .margin_top(units(layout.top))
-        .margin_right(units(layout.width - layout.left - layout.plot_width))
-        .set_label_area_size(LabelAreaPosition::Left, units(layout.left))
-        .set_label_area_size(
-            LabelAreaPosition::Bottom,
-            units(layout.height - layout.top - layout.plot_height),
-        )
-        .build_cartesian_2d(
-            PlacedAxis::new(&layout.x, &layout.x_ticks),
-            PlacedAxis::new(&layout.y, &layout.y_ticks),
-        )
-        .map_err(told)?;
-    frame
-        .configure_mesh()
-        .light_line_style(shape(Role::Minor))
-        .bold_line_style(shape(Role::Grid))
-        .axis_style(shape(Role::Axis))
-        .label_style(letters(Role::Tick))
-        .set_all_tick_mark_size(4 * UNITS)
-        .draw()
-        .map_err(told)?;
-    Ok(frame)
+/// Lines at all ticks, stronger ones at those with a label, and the two axes.
+fn put_axes(out: &mut String, layout: &Layout, frame: &Frame) {
+    let (x_labelled, x_minor) = tick_places(&layout.x, &layout.x_ticks);
+    let (y_labelled, y_minor) = tick_places(&layout.y, &layout.y_ticks);
+    let x_labelled: Vec<_> = x_labelled.into_iter().map(|(place, label)| (frame.x(place), label)).collect();
+    let y_labelled: Vec<_> = y_labelled.into_iter().map(|(place, label)| (frame.y(place), label)).collect();
+    let xs = || x_labelled.iter().map(|&(x, _)| x);
+    let ys = || y_labelled.iter().map(|&(y, _)| y);
+    put_grid(
+        out,
+        "minor",
+        frame,
+        xs().chain(x_minor.into_iter().map(|place| frame.x(place))),
+        ys().chain(y_minor.into_iter().map(|place| frame.y(place))),
+    );
+    put_grid(out, "grid", frame, xs(), ys());
+
+    let (label, tick) = (units(TICK_LABEL), units(TICK));
+    let left = frame.left - 1;
+    put_line(out, "axis", [(left, frame.bottom), (left, frame.top)]);
+    for &(y, text) in &y_labelled {
+        put_text(out, "tick", text, (frame.left - label, y), Anchor::Right);
+        put_line(out, "axis", [(left - tick, y), (left, y)]);
+    }
+    let bottom = frame.bottom + 1;
+    put_line(out, "axis", [(frame.left, bottom), (frame.right, bottom)]);
+    for &(x, text) in &x_labelled {
+        put_text(out, "tick", text, (x, bottom + label), Anchor::Top);
+        put_line(out, "axis", [(x, bottom), (x, bottom + tick)]);
+    }
 }
 
-fn draw_text(area: &Area, text: &str, role: Role, (x, y): (f64, f64), side: HPos) -> Drawn {
-    let style = letters(role).pos(Pos::new(side, VPos::Center));
-    area.draw(&Text::new(text, (units(x), units(y)), style)).map_err(told)
+/// Vertical lines, then horizontal ones, from edge to edge of the frame.
+fn put_grid(
+    out: &mut String,
+    class: &str,
+    frame: &Frame,
+    xs: impl Iterator<Item = i32>,
+    ys: impl Iterator<Item = i32>,
+) {
+    for x in xs {
+        put_line(out, class, [(x, frame.bottom), (x, frame.top)]);
+    }
+    for y in ys {
+        put_line(out, class, [(frame.left, y), (frame.right, y)]);
+    }
 }
 
-fn draw_labels(area: &Area, layout: &Layout) -> Drawn {
+/// Places of the ticks that are inside the frame: those with a label, and the others.
+fn tick_places<'a>(extent: &Extent, ticks: &'a Ticks) -> (Vec<(f64, &'a str)>, Vec<f64>) {
+    let inside = |place: &f64| (-1e-6..=1.0 + 1e-6).contains(place);
+    let place = |value: f64| extent.place(value).filter(inside).map(|place| place.clamp(0.0, 1.0));
+    let labelled =
+        ticks.labelled.iter().filter_map(|(value, label)| Some((place(*value)?, label.as_str()))).collect();
+    (labelled, ticks.minor.iter().filter_map(|&value| place(value)).collect())
+}
+
+fn put_axis_labels(out: &mut String, layout: &Layout) {
     for (line, y) in &layout.y_label {
-        draw_text(area, line, Role::Label, (0.0, *y), HPos::Left)?;
+        put_text_at(out, "label", line, (0.0, *y), Anchor::Left);
     }
     for (line, y) in &layout.x_label {
-        draw_text(area, line, Role::Label, (layout.left + layout.plot_width, *y), HPos::Right)?;
+        put_text_at(out, "label", line, (layout.left + layout.plot_width, *y), Anchor::Right);
     }
-    Ok(())
 }
 
-fn draw_mark_lines(frame: &mut Frame<'_>, chart: &Chart, layout: &Layout) -> Drawn {
+fn put_mark_lines(out: &mut String, chart: &Chart, layout: &Layout, frame: &Frame) {
     for mark in &chart.marks {
         let line: Option<[Place; 2]> = match mark.axis {
             MarkAxis::X => layout.x.place(mark.at).map(|x| [(x, 0.0), (x, 1.0)]),
             MarkAxis::Y => layout.y.place(mark.at).map(|y| [(0.0, y), (1.0, y)]),
         };
-        if let Some(line) = line.filter(|line| line.iter().all(super::curves::inside)) {
-            frame.draw_series([PathElement::new(line.to_vec(), shape(Role::Mark))]).map_err(told)?;
+        if let Some(line) = line.filter(|line| line.iter().all(inside)) {
+            put_line(out, "mark", line.map(|place| frame.point(place)));
         }
     }
-    Ok(())
 }
 
-fn draw_mark_labels(area: &Area, layout: &Layout) -> Drawn {
-    for label in &layout.mark_labels {
-        draw_text(area, &label.text, Role::MarkLabel, label.at, label.side)?;
-    }
-    Ok(())
-}
-
-fn draw_curve(frame: &mut Frame<'_>, shared: &Shared, chart: &Chart, index: usize, curve: &Curve) -> Drawn {
-    let series = &chart.series[index];
-    let mut head = String::new();
+fn put_curve(out: &mut String, index: usize, series: &Series, curve: &Curve, frame: &Frame) {
     let dashed = if series.stroke == Stroke::Dashed { " dashed" } else { "" };
-    put!(head, "<g class=\"{}{dashed}\"><title>{}</title>\n", super::class(index), Escaped(&series.name));
-    shared.borrow_mut().push(&head);
-    let lines = curve.lines.iter().map(|line| PathElement::new(line.clone(), shape(Role::Data)));
-    frame.draw_series(lines).map_err(told)?;
+    put!(out, "<g class=\"{}{dashed}\"><title>{}</title>\n", marker::class(index), Escaped(&series.name));
+    for line in &curve.lines {
+        put_line(out, "line", line.iter().map(|&place| frame.point(place)));
+    }
+    let put_shapes = |out: &mut String, places: &[Place], radius: f64| {
+        let points: Vec<Point> = places.iter().map(|&place| frame.point(place)).collect();
+        put_markers(out, &points, &marker::corners(index, radius), radius);
+    };
     let radius = match curve.markers.len() {
-        0..=100 => 3.6,
+        0..=100 => marker::RADIUS,
         101..=1000 => 2.6,
         _ => 1.6,
     };
-    draw_markers(frame, index, &curve.markers, radius)?;
+    put_shapes(out, &curve.markers, radius);
     if !curve.keys.is_empty() {
-        shared.borrow_mut().push("<g class=\"keys\">\n");
-        draw_markers(frame, index, &curve.keys, 3.6)?;
-        shared.borrow_mut().push("</g>\n");
+        out.push_str("<g class=\"keys\">\n");
+        put_shapes(out, &curve.keys, marker::RADIUS);
+        out.push_str("</g>\n");
     }
-    shared.borrow_mut().push("</g>\n");
-    Ok(())
-}
-
-fn draw_markers(frame: &mut Frame<'_>, index: usize, places: &[Place], radius: f64) -> Drawn {
-    let corners = marker::corners(index, radius);
-    if corners.is_empty() {
-        let discs = places.iter().map(|&place| Circle::new(place, units(radius), shape(Role::Data)));
-        return frame.draw_series(discs).map(drop).map_err(told);
-    }
-    let corners: Vec<(i32, i32)> = corners.iter().map(|&(x, y)| (units(x), units(y))).collect();
-    let shapes = places
-        .iter()
-        .map(|&place| EmptyElement::at(place) + Polygon::new(corners.clone(), shape(Role::Data)));
-    frame.draw_series(shapes).map(drop).map_err(told)
+    out.push_str("</g>\n");
 }

@@ -1,18 +1,12 @@
 //! Where the parts of a chart are, for one width of the page.
 
-use plotters::style::text_anchor::HPos;
-
 use super::curves::{self, Curve};
 use super::marks::{self, MarkLabel};
 use super::scale::Extent;
-use super::text::{width, wrap};
+use super::text::{Anchor, LETTERS, LINE, width, wrap};
 use super::ticks::Ticks;
 use crate::page::{Chart, MarkAxis};
 
-/// Size of letters, pixels.
-pub(super) const LETTERS: f64 = 13.0;
-/// Height of a line of text, pixels.
-pub(super) const LINE: f64 = 17.0;
 /// From an axis to the labels of its ticks, pixels.
 const TICK: f64 = 9.0;
 
@@ -109,8 +103,9 @@ impl Layout {
             mark_labels: Vec::new(),
             curves: Vec::new(),
         };
-        let curve =
-            |index: usize| curves::curve(&chart.series[index], &layout.x, &layout.y, turn(chart, index));
+        let curve = |index: usize| {
+            curves::curve(&chart.series[index], &layout.x, &layout.y, curves::turn(chart, index))
+        };
         layout.curves = (0..chart.series.len()).map(curve).collect();
         layout.label_marks(chart);
         let below = layout.top + plot_height + TICK + LINE;
@@ -128,7 +123,7 @@ impl Layout {
         let right = self.left + self.plot_width;
         for text in homeless.iter().flat_map(|text| wrap(text, LETTERS, right)) {
             let at = (right, self.top + LINE / 2.0);
-            self.mark_labels.push(MarkLabel { text, at, side: HPos::Right });
+            self.mark_labels.push(MarkLabel { text, at, anchor: Anchor::Right });
             self.top += LINE;
         }
         let (rows, height) = marks::above(chart, &self.x, span, self.width, self.top);
@@ -137,13 +132,6 @@ impl Layout {
         let lowered = |label: MarkLabel| MarkLabel { at: (label.at.0, label.at.1 + self.top), ..label };
         self.mark_labels.extend(inner.into_iter().map(lowered));
     }
-}
-
-/// Which of the lines with its stroke a series is, and how many there are.
-pub(super) fn turn(chart: &Chart, index: usize) -> (usize, usize) {
-    let stroke = chart.series[index].stroke;
-    let same = |until: usize| chart.series[..until].iter().filter(|series| series.stroke == stroke).count();
-    (same(index), same(chart.series.len()))
 }
 
 /// Axes that hold all points and marks. A point counts only where both of its values can be drawn.

@@ -1,9 +1,18 @@
-//! Shapes that tell series apart without colour.
+//! What tells series apart: colours, and shapes without them.
 
 use std::f64::consts::TAU;
 
+/// Colours in the style sheet; series beyond start again, with another shape.
+const COLOURS: usize = 8;
 /// Number of shapes; series beyond start again, with another colour.
-pub(super) const SHAPES: usize = 7;
+const SHAPES: usize = 7;
+/// Size of the shapes where there is room for them, pixels.
+pub(super) const RADIUS: f64 = 3.6;
+
+/// Class of the colour of a series.
+pub(super) fn class(series: usize) -> String {
+    format!("s{}", series % COLOURS)
+}
 
 /// Corners of the shape of a series around (0, 0), `radius` across to a side; none for the disc.
 pub(super) fn corners(shape: usize, radius: f64) -> Vec<(f64, f64)> {

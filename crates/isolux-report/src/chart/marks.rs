@@ -1,11 +1,9 @@
 //! Where the labels of marks go, so that they cover neither data nor each other.
 
-use plotters::style::text_anchor::HPos;
-
 use super::curves::{Curve, Place, cut_segment, inside};
-use super::layout::{LETTERS, LINE};
 use super::scale::Extent;
-use super::text::{self, wrap};
+use super::text::{self, Anchor, LETTERS, LINE, wrap};
+use crate::numbers::scientific;
 use crate::page::{Chart, Mark, MarkAxis};
 
 /// Room between a label and the end of the frame or another label, pixels.
@@ -17,9 +15,9 @@ const TRIES: usize = 9;
 #[derive(Clone)]
 pub(super) struct MarkLabel {
     pub(super) text: String,
-    /// Pixels: the end or the middle of the text, and half its height.
+    /// Where `anchor` of the text is, pixels.
     pub(super) at: (f64, f64),
-    pub(super) side: HPos,
+    pub(super) anchor: Anchor,
 }
 
 /// The frame that holds the curves, its top at 0, pixels.
@@ -62,7 +60,7 @@ pub(super) fn above(
             labels.push(MarkLabel {
                 text,
                 at: (centre, top + LINE * (row as f64 + 0.5)),
-                side: HPos::Center,
+                anchor: Anchor::Middle,
             });
         }
     }
@@ -100,7 +98,7 @@ pub(super) fn beside(
         taken.push(best);
         for (row, text) in lines.into_iter().enumerate() {
             let at = (best.2, best.1 + LINE * (row as f64 + 0.5));
-            labels.push(MarkLabel { text, at, side: HPos::Right });
+            labels.push(MarkLabel { text, at, anchor: Anchor::Right });
         }
     }
     (labels, homeless)
@@ -109,7 +107,7 @@ pub(super) fn beside(
 /// Three digits.
 fn short(value: f64) -> String {
     if value == 0.0 || !(1e-3..1e5).contains(&value.abs()) {
-        return if value == 0.0 { "0".to_owned() } else { super::scientific(value, 2) };
+        return if value == 0.0 { "0".to_owned() } else { scientific(value, 2) };
     }
     let decimals = (2.0 - value.abs().log10().floor()).max(0.0) as usize;
     let text = format!("{value:.decimals$}");

@@ -1,95 +1,14 @@
-//! Charts: a figure with a legend, the curves as SVG for screens and for phones, and a caption.
+//! Charts: curves over two axes as SVG.
 
-mod backend;
 mod curves;
 mod draw;
+mod figure;
 mod layout;
 mod marker;
 mod marks;
 mod scale;
+mod svg;
 mod text;
 mod ticks;
 
-use crate::error::ReportError;
-use crate::markup::{Escaped, put};
-use crate::page::{Axis, Chart, Scale, Stroke};
-use layout::{Format, Layout, turn};
-
-pub(crate) use ticks::scientific;
-
-/// Colours in the style sheet; series beyond start again, with another marker.
-const COLOURS: usize = 8;
-
-/// Class of the colour of a series.
-fn class(series: usize) -> String {
-    format!("s{}", series % COLOURS)
-}
-
-/// Appends legend, drawings and the note on what is left out.
-pub(crate) fn put_chart(out: &mut String, chart: &Chart) -> Result<(), ReportError> {
-    put_legend(out, chart);
-    for format in [Format::Wide, Format::Narrow] {
-        let layout = Layout::new(chart, format);
-        let drawing = draw::draw(chart, &layout)
-            .map_err(|reason| ReportError::Drawing { id: chart.id.clone(), reason })?;
-        put!(
-            out,
-            "<svg class=\"plot {}\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" \
-             xmlns=\"http://www.w3.org/2000/svg\">\n{drawing}</svg>\n",
-            format.class(),
-            Escaped(&chart.alt),
-            layout.width,
-            layout.height
-        );
-    }
-    Ok(())
-}
-
-/// What the reader of a logarithmic chart must know: how many points it cannot show.
-pub(crate) fn left_out(chart: &Chart) -> Option<String> {
-    let lost = |axis: &Axis, value: f64| axis.scale == Scale::Log && value <= 0.0;
-    let points = chart.series.iter().flat_map(|series| &series.points);
-    match points.filter(|&&(x, y)| lost(&chart.x, x) || lost(&chart.y, y)).count() {
-        0 => None,
-        1 => Some("One point that is not positive has no place on the logarithmic axis.".to_owned()),
-        count => Some(format!("{count} points that are not positive have no place on the logarithmic axis.")),
-    }
-}
-
-fn put_legend(out: &mut String, chart: &Chart) {
-    if chart.series.iter().all(|series| series.name.is_empty()) {
-        return;
-    }
-    out.push_str("<ul class=\"legend\">\n");
-    for (index, series) in chart.series.iter().enumerate() {
-        let dashed = if series.stroke == Stroke::Dashed { " dashed" } else { "" };
-        put!(
-            out,
-            "<li><svg class=\"swatch {}{dashed}\" viewBox=\"-16 -7 32 14\" aria-hidden=\"true\" \
-             xmlns=\"http://www.w3.org/2000/svg\">",
-            class(index)
-        );
-        if series.stroke != Stroke::Points {
-            out.push_str("<path class=\"line\" d=\"M-15 0L15 0\"/>");
-        }
-        let keyed = turn(chart, index).1 > 1;
-        if matches!(series.stroke, Stroke::Points | Stroke::SolidPoints) || keyed {
-            put_swatch_marker(out, index);
-        }
-        put!(out, "</svg>{}</li>\n", Escaped(&series.name));
-    }
-    out.push_str("</ul>\n");
-}
-
-fn put_swatch_marker(out: &mut String, index: usize) {
-    let corners = marker::corners(index, 3.6);
-    if corners.is_empty() {
-        out.push_str("<circle class=\"dots\" r=\"3.6\"/>");
-        return;
-    }
-    out.push_str("<polygon class=\"dots\" points=\"");
-    for (x, y) in corners {
-        put!(out, "{x:.1},{y:.1} ");
-    }
-    out.push_str("\"/>");
-}
+pub(crate) use figure::put_chart;

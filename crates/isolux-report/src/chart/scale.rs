@@ -1,9 +1,5 @@
 //! From the values of an axis to places on it.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
 use super::ticks::{self, Ticks};
 use crate::page::{Axis, Scale};
 
@@ -112,52 +108,6 @@ impl Extent {
 /// Whether an axis of that scale can show the value.
 pub(super) fn drawable(scale: Scale, value: f64) -> bool {
     value.is_finite() && value.abs() <= LARGEST && (scale == Scale::Linear || value >= f64::MIN_POSITIVE)
-}
-
-/// An axis for the plotting library: places from 0 to 1, with ticks.
-#[derive(Clone, Debug)]
-pub(super) struct PlacedAxis {
-    /// Place and label.
-    labelled: Vec<(f64, String)>,
-    minor: Vec<f64>,
-}
-
-impl PlacedAxis {
-    pub(super) fn new(extent: &Extent, ticks: &Ticks) -> Self {
-        let inside = |place: &f64| (-1e-6..=1.0 + 1e-6).contains(place);
-        let place = |value: f64| extent.place(value).filter(inside).map(|place| place.clamp(0.0, 1.0));
-        let labelled =
-            ticks.labelled.iter().filter_map(|(value, label)| Some((place(*value)?, label.clone())));
-        Self {
-            labelled: labelled.collect(),
-            minor: ticks.minor.iter().filter_map(|&value| place(value)).collect(),
-        }
-    }
-}
-
-impl Ranged for PlacedAxis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, place: &f64, (start, end): (i32, i32)) -> i32 {
-        (f64::from(start) + place * f64::from(end - start)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        let minor: &[f64] = if hint.weight().allow_light_points() { &self.minor } else { &[] };
-        self.labelled.iter().map(|(place, _)| *place).chain(minor.iter().copied()).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        0.0..1.0
-    }
-}
-
-impl ValueFormatter<f64> for PlacedAxis {
-    fn format_ext(&self, place: &f64) -> String {
-        let tick = self.labelled.iter().find(|(at, _)| at == place);
-        tick.map(|(_, label)| label.clone()).unwrap_or_default()
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,24 @@
 //! Sizes of text that is laid out before any font is known.
 
+/// Size of letters, pixels.
+pub(super) const LETTERS: f64 = 13.0;
+/// Height of a line of text, pixels.
+pub(super) const LINE: f64 = 17.0;
 /// Width of a letter of a usual sans-serif font over its size, on average and on the safe side.
 const LETTER: f64 = 0.56;
+
+/// Which point of a line of text is at its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Anchor {
+    /// Its left end, at half its height.
+    Left,
+    /// Its middle.
+    Middle,
+    /// Its right end, at half its height.
+    Right,
+    /// The middle of its upper edge.
+    Top,
+}
 
 /// Estimated width in pixels of a text in letters of `size` pixels.
 pub(super) fn width(text: &str, size: f64) -> f64 {

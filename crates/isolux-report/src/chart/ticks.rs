@@ -1,5 +1,7 @@
 //! Where an axis has its ticks, and what they say.
 
+use crate::numbers::{scientific, superscript};
+
 /// Decimal exponents between which a number is written out; beyond, as a power of ten.
 const PLAIN: std::ops::RangeInclusive<i32> = -3..=5;
 
@@ -122,21 +124,6 @@ impl Digits {
 /// Decimal exponent of a positive number; rounding errors of a step such as 0.9999·10ⁿ are forgiven.
 fn exponent(value: f64) -> i32 {
     (value.log10() + 1e-9).floor() as i32
-}
-
-/// `1.50×10⁷`.
-pub(crate) fn scientific(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$e}");
-    match text.split_once('e').map(|(mantissa, power)| (mantissa, power.parse())) {
-        Some((mantissa, Ok(power))) => format!("{mantissa}×10{}", superscript(power)),
-        _ => text,
-    }
-}
-
-fn superscript(power: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let digit = |character: char| character.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
-    power.to_string().chars().map(digit).collect()
 }
 
 #[cfg(test)]
