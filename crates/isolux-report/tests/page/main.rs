@@ -2,71 +2,27 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail by panicking")]
 
+mod charts;
+mod parts;
+
 use std::collections::BTreeSet;
 
 use isolux::{Plane, Shape};
 use isolux_report::page::{
-    Axis, Block, Cell, Chart, Claim, Colours, Mark, MarkAxis, Page, Picture, Scale, Section, Series, Stroke,
-    Table, Verdict,
+    Block, Cell, Claim, Mark, MarkAxis, Page, Scale, Section, Series, Stroke, Table, Verdict,
 };
 use isolux_report::{Companions, ReportError, render, render_with};
-use proptest::prelude::*;
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
+
+use parts::{all, chart, has_class, page, parse, picture};
 
 #[allow(dead_code, reason = "the example's main is not run here")]
-#[path = "../examples/sample.rs"]
+#[path = "../../examples/sample.rs"]
 mod sample;
 
 const HOSTILE: &str = "<script>alert(\"1\")</script> & 'x' </style> ]]> \u{1b}\u{0}";
 /// The same, as a reader sees it.
 const HARMLESS: &str = "<script>alert(\"1\")</script> & 'x' </style> ]]> \u{fffd}\u{fffd}";
-
-fn parse(html: &str) -> Document<'_> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(html, options).unwrap_or_else(|error| panic!("{error}\n{html}"))
-}
-
-fn all<'a>(document: &'a Document<'a>, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
-    document.descendants().filter(move |node| node.tag_name().name() == name)
-}
-
-fn has_class(node: Node<'_, '_>, class: &str) -> bool {
-    node.attribute("class").is_some_and(|classes| classes.split(' ').any(|found| found == class))
-}
-
-fn axis(scale: Scale) -> Axis {
-    Axis { label: "x in m".into(), scale, range: None }
-}
-
-fn chart(id: &str, scale: Scale, series: Vec<Series>) -> Chart {
-    Chart {
-        id: id.into(),
-        caption: "c".into(),
-        alt: "a".into(),
-        x: axis(scale),
-        y: axis(scale),
-        series,
-        marks: vec![],
-    }
-}
-
-fn picture(id: &str, values: Plane<f32>, range: (f32, f32)) -> Picture {
-    let label = "amplitude in DN".into();
-    Picture {
-        id: id.into(),
-        caption: "c".into(),
-        alt: "a".into(),
-        values,
-        range,
-        label,
-        colours: Colours::Viridis,
-    }
-}
-
-fn page(blocks: Vec<Block>) -> Page {
-    let section = Section { id: "only".into(), title: "Only".into(), blocks };
-    Page { title: "t".into(), lead: String::new(), sections: vec![section], colophon: String::new() }
-}
 
 #[test]
 fn the_sample_is_well_formed_with_headings_in_order_and_unique_ids() {
@@ -191,48 +147,6 @@ fn hostile_names_stay_text() {
     );
 }
 
-/// Markers and line vertices of a series in the drawing for screens.
-fn drawn(html: &str, class: &str) -> (usize, usize) {
-    let document = parse(html);
-    let plot = all(&document, "svg").find(|svg| has_class(*svg, "wide")).unwrap();
-    let group = plot.children().find(|node| has_class(*node, class)).unwrap();
-    let count = |class: &str, letters: &[char]| {
-        let paths = group.children().filter(|node| has_class(*node, class));
-        paths.map(|path| path.attribute("d").unwrap().matches(letters).count()).sum()
-    };
-    (count("dots", &['M']), count("line", &['M', 'L']))
-}
-
-#[test]
-fn charts_hold_the_data() {
-    let points = |count: u32| (0..count).map(|x| (f64::from(x), f64::from(x * x % 17))).collect::<Vec<_>>();
-    let series = |name: &str, stroke, count| Series { name: name.into(), points: points(count), stroke };
-    let chart = chart(
-        "c",
-        Scale::Linear,
-        vec![
-            series("line", Stroke::Solid, 120),
-            series("dashed", Stroke::Dashed, 30),
-            series("points", Stroke::Points, 250),
-            series("both", Stroke::SolidPoints, 40),
-        ],
-    );
-    let html = render(&page(vec![Block::Chart(chart)])).unwrap();
-    assert_eq!(drawn(&html, "s0"), (0, 120));
-    assert_eq!(drawn(&html, "s1"), (0, 30));
-    assert_eq!(drawn(&html, "s2"), (250, 0));
-    assert_eq!(drawn(&html, "s3"), (40, 40));
-}
-
-#[test]
-fn values_without_a_place_on_a_logarithmic_axis_are_counted() {
-    let points = vec![(1.0, 10.0), (2.0, 0.0), (3.0, -5.0), (4.0, 1000.0), (f64::NAN, 1.0)];
-    let series = vec![Series { name: "s".into(), points, stroke: Stroke::Points }];
-    let html = render(&page(vec![Block::Chart(chart("c", Scale::Log, series))])).unwrap();
-    assert_eq!(drawn(&html, "s0").0, 2);
-    assert!(html.contains("2 points that are not positive have no place on the logarithmic axis."));
-}
-
 #[test]
 fn ids_and_shapes_that_cannot_be_rendered_are_refused() {
     let chart_of = |id: &str| Block::Chart(chart(id, Scale::Linear, vec![]));
@@ -287,59 +201,4 @@ fn empty_parts_and_pictures_without_values_still_give_a_page() {
         })
         .unwrap(),
     );
-}
-
-fn any_number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        any::<f64>(),
-        -10.0..10.0,
-        Just(0.0),
-        Just(1e300),
-        Just(-1e300),
-        Just(5e-324),
-        Just(f64::NAN),
-        Just(f64::INFINITY),
-        1.0..1.000_000_001,
-    ]
-}
-
-fn any_axis() -> impl Strategy<Value = Axis> {
-    let scale = prop_oneof![Just(Scale::Linear), Just(Scale::Log)];
-    let range = proptest::option::of((any_number(), any_number()));
-    ("[ -~]{0,80}", scale, range).prop_map(|(label, scale, range)| Axis { label, scale, range })
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    #[test]
-    fn any_chart_is_drawn_inside_its_frame(
-        x in any_axis(),
-        y in any_axis(),
-        series in proptest::collection::vec(proptest::collection::vec((any_number(), any_number()), 0..12), 0..10),
-        marks in proptest::collection::vec((any::<bool>(), any_number(), "[ -~]{0,60}"), 0..4),
-    ) {
-        let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Points, Stroke::SolidPoints];
-        let series = series.into_iter().enumerate().map(|(index, points)| {
-            Series { name: format!("series {index}"), points, stroke: strokes[index % 4] }
-        });
-        let marks = marks.into_iter().map(|(vertical, at, label)| {
-            Mark { axis: if vertical { MarkAxis::X } else { MarkAxis::Y }, at, label }
-        });
-        let chart = Chart {
-            id: "c".into(), caption: "c".into(), alt: "a".into(), x, y, series: series.collect(), marks: marks.collect(),
-        };
-        let html = render(&page(vec![Block::Chart(chart)])).unwrap();
-        let document = parse(&html);
-        for svg in all(&document, "svg").filter(|svg| has_class(*svg, "plot")) {
-            let size: Vec<f64> = svg.attribute("viewBox").unwrap().split(' ').map(|side| side.parse().unwrap()).collect();
-            for path in svg.descendants().filter(|node| has_class(*node, "line")) {
-                for pair in path.attribute("d").unwrap().split(['M', 'L']).skip(1) {
-                    let (x, y) = pair.split_once(' ').unwrap();
-                    let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse().unwrap());
-                    prop_assert!((0.0..=size[2]).contains(&x) && (0.0..=size[3]).contains(&y), "{x} {y} in {size:?}");
-                }
-            }
-        }
-    }
 }
