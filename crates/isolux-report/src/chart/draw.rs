@@ -64,9 +64,9 @@ impl Frame {
     }
 }
 
-/// The unit at a place from 0, the start, to 1, the end.
+/// The unit at a place from 0, the start, to 1, the end. Rounding errors of extreme values do not lead out of the frame.
 fn between(start: i32, end: i32, place: f64) -> i32 {
-    (f64::from(start) + place * f64::from(end - start)).round() as i32
+    (f64::from(start) + place.clamp(0.0, 1.0) * f64::from(end - start)).round() as i32
 }
 
 fn put_text_at(out: &mut String, class: &str, text: &str, (x, y): (f64, f64), anchor: Anchor) {
@@ -92,7 +92,7 @@ fn put_axes(out: &mut String, layout: &Layout, frame: &Frame) {
 
     let (label, tick) = (units(TICK_LABEL), units(TICK));
     let left = frame.left - 1;
-    put_line(out, "axis", [(left, frame.bottom), (left, frame.top)]);
+    put_line(out, "axis", [(left, frame.top), (left, frame.bottom)]);
     for &(y, text) in &y_labelled {
         put_text(out, "tick", text, (frame.left - label, y), Anchor::Right);
         put_line(out, "axis", [(left - tick, y), (left, y)]);
@@ -124,7 +124,7 @@ fn put_grid(
 /// Places of the ticks that are inside the frame: those with a label, and the others.
 fn tick_places<'a>(extent: &Extent, ticks: &'a Ticks) -> (Vec<(f64, &'a str)>, Vec<f64>) {
     let inside = |place: &f64| (-1e-6..=1.0 + 1e-6).contains(place);
-    let place = |value: f64| extent.place(value).filter(inside).map(|place| place.clamp(0.0, 1.0));
+    let place = |value: f64| extent.place(value).filter(inside);
     let labelled =
         ticks.labelled.iter().filter_map(|(value, label)| Some((place(*value)?, label.as_str()))).collect();
     (labelled, ticks.minor.iter().filter_map(|&value| place(value)).collect())
