@@ -128,6 +128,29 @@ pub struct Choice {
     pub modulation_frequency_hz: Option<f64>,
 }
 
+impl Choice {
+    /// What one writes in NumPy, `A d² / t` relative to the reference, without a step for highlights: as far as the
+    /// channels are there. It needs no calibration.
+    #[must_use]
+    pub fn textbook(available: Channels) -> Self {
+        let (distance, time) =
+            (available.contains(Channels::DISTANCE), available.contains(Channels::INTEGRATION_TIME));
+        Self {
+            time: Some(if time { TimeStep::Linear } else { TimeStep::None }),
+            distance: Some(if distance { DistanceStep::Square } else { DistanceStep::None }),
+            profile: Some(ProfileStep::Off),
+            specular: Some(SpecularStep::None),
+            ..Self::default()
+        }
+    }
+
+    /// The paper's chain: lut, cubic, histogram.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self { method: Method::Paper, ..Self::default() }
+    }
+}
+
 /// What a plan must know of the recording that it is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stream {
