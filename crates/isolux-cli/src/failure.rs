@@ -2,10 +2,12 @@
 //! usage.
 
 use std::fmt::Display;
-use std::path::Path;
 use std::process::ExitCode;
 
 use isolux::standardize::PlanError;
+use isolux_pipeline::PipelineError;
+
+use crate::advice;
 
 /// A failed command.
 #[derive(Debug, thiserror::Error)]
@@ -22,11 +24,6 @@ impl Failure {
     /// Exit code after Ctrl-C, as shells have it.
     pub(crate) const INTERRUPTED: u8 = 130;
 
-    /// The user has stopped the command.
-    pub(crate) fn interrupted() -> Self {
-        Self { message: "interrupted; nothing was written".to_owned(), exit_code: Self::INTERRUPTED }
-    }
-
     /// The data are bad.
     pub(crate) fn data(message: impl Display) -> Self {
         Self { message: message.to_string(), exit_code: 1 }
@@ -35,11 +32,6 @@ impl Failure {
     /// The call is bad.
     pub(crate) fn usage(message: impl Display) -> Self {
         Self { message: message.to_string(), exit_code: 2 }
-    }
-
-    /// Bad data in a frame of a recording.
-    pub(crate) fn frame(recording: &Path, frame: usize, message: impl Display) -> Self {
-        Self::data(format!("`{}`, frame {frame}: {message}", recording.display()))
     }
 
     /// The process's exit code.
@@ -66,11 +58,22 @@ impl From<isolux_camera::CameraError> for Failure {
     }
 }
 
-impl From<PlanError> for Failure {
-    fn from(error: PlanError) -> Self {
-        match error {
-            PlanError::TermMissing { .. } | PlanError::ChannelMissing { .. } => Self::usage(error),
-            _ => Self::data(error),
-        }
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Self {
+        Self { message: advice::with(&error, error.advice()), exit_code: exit_code(&error) }
+    }
+}
+
+/// Bad usage is what another call could do with the same data.
+fn exit_code(error: &PipelineError) -> u8 {
+    match error {
+        PipelineError::Interrupted => Failure::INTERRUPTED,
+        PipelineError::Plan(PlanError::TermMissing { .. } | PlanError::ChannelMissing { .. })
+        | PipelineError::BracketTime { .. }
+        | PipelineError::NoBrackets { .. }
+        | PipelineError::Merge { .. }
+        | PipelineError::ChannelKept { .. }
+        | PipelineError::KeptOfMerged => 2,
+        _ => 1,
     }
 }

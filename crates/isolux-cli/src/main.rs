@@ -1,27 +1,19 @@
 //! `isolux`: standardizes the amplitude images of time-of-flight cameras.
 
-mod args;
-mod assessment;
-mod beside;
-mod chain;
+mod advice;
 mod cmd;
-mod console;
-mod evaluation_page;
+mod evaluation;
 mod failure;
-mod frames;
-mod interrupt;
-mod option_values;
+mod options;
 mod output;
-mod rivals;
-mod sigma;
-mod step_args;
+mod terminal;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Cli, Command};
+use options::{Cli, Command};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {

@@ -30,6 +30,16 @@ pub enum Advice {
     UseDistanceStep(DistanceStep),
     /// Tell the noise of the amplitude.
     GiveNoise,
+    /// Tell the noise of the amplitude, or let it be estimated from the recording.
+    GiveOrEstimateNoise,
+    /// Tell the number of frames of a bracket.
+    GiveBracketLength,
+    /// Name the camera.
+    NameCamera,
+    /// Do not keep the channels of the input.
+    LeaveInputOut,
+    /// Record within the calibrated range of integration times, calibrate further, or take the time out by physics.
+    RecordCalibratedTimes,
     /// Tell the intrinsics of the recording.
     GiveIntrinsics,
     /// Tell the modulation frequency.

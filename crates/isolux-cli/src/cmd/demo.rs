@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 
 use isolux::calibrate::CalibrateSettings;
 use isolux::evaluate::Comparison;
-use isolux::standardize::Method;
-use isolux::{Calibration, Channels, Choice, IntegrationTime, Standardizer};
-use isolux_io::Recording;
+use isolux::{Calibration, Choice};
+use isolux_pipeline::assess::{Pixels, first_frames_at};
+use isolux_pipeline::{
+    AssessOptions, CalibrationPaths, NativeSink, StandardizeOptions, assess, plan, standardize,
+};
 use isolux_report::page::{Page, Picture, Section};
 use serde_json::{Value, json};
 
-use crate::args::DemoArgs;
-use crate::assessment::{Pixels, assess};
-use crate::cmd::{calibrate, evaluate, simulate, standardize};
-use crate::console;
+use crate::cmd::{calibrate, simulate};
+use crate::evaluation;
 use crate::failure::{Failure, Outcome};
-use crate::rivals::Rivals;
-use crate::{evaluation_page, frames};
+use crate::options::DemoArgs;
+use crate::terminal::{self, Terminal, interrupt};
 
 /// Marks a folder as a demo, which the next one may replace.
 const FIGURES: &str = "demo.json";
@@ -77,12 +77,13 @@ pub(crate) fn run(args: &DemoArgs) -> Outcome {
     }
     let parent = args.dir.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let staging = staging_folder(parent).map_err(io)?;
-    let demo = Demo { folder: staging.path().to_owned(), seed: args.seed };
+    let demo = Demo { folder: staging.path().to_owned(), seed: args.seed, observer: Terminal::default() };
+    interrupt::watch();
     let figures = demo.make()?;
     fs::write(demo.folder.join(FIGURES), format!("{figures:#}\n")).map_err(io)?;
     replace(&args.dir, staging).map_err(io)?;
     let dir = args.dir.display();
-    console::print(format!(
+    terminal::print(format!(
         "\nIn {dir}: report.html, recordings/, CAMERA.json, standardized/, before-after-*.png (top: raw, bottom: \
          standardized), {FIGURES}\nThe same with your own recording: isolux info REC"
     ))
@@ -135,6 +136,7 @@ fn staging_folder(parent: &Path) -> std::io::Result<tempfile::TempDir> {
 struct Demo {
     folder: PathBuf,
     seed: u64,
+    observer: Terminal,
 }
 
 impl Demo {
@@ -147,20 +149,22 @@ impl Demo {
         }
         for scene in [EXPOSURE_SWEEP, DISTANCE_SWEEP].into_iter().chain(EXHIBITS.iter().map(|e| e.scene)) {
             let simulation = simulate::simulation(scene, None, None, self.seed)?;
-            simulate::record(&simulation, simulate::Extras::default(), &self.recording(scene), false)?;
+            let extras = isolux_pipeline::simulate::Extras::default();
+            let recording = self.recording(scene);
+            isolux_pipeline::simulate::record(&simulation, extras, &recording, false, &self.observer)?;
         }
-        let (calibration, report) = calibrate::fit(
-            &CalibrateSettings::default(),
-            None,
-            calibrate::Inputs {
-                exposure_sweeps: &[self.recording(EXPOSURE_SWEEP)],
-                distance_sweeps: &[self.recording(DISTANCE_SWEEP)],
-                ..calibrate::Inputs::default()
-            },
-        )?;
+        let sweeps = CalibrationPaths {
+            exposure_sweeps: &[self.recording(EXPOSURE_SWEEP)],
+            distance_sweeps: &[self.recording(DISTANCE_SWEEP)],
+            ..CalibrationPaths::default()
+        };
+        let settings = CalibrateSettings::default();
+        let fitted = isolux_pipeline::calibrate(&settings, None, sweeps.open()?, &self.observer);
+        let (calibration, report) =
+            fitted.inspect_err(|error| error.warnings().iter().for_each(terminal::warn))?;
         isolux_io::write_calibration(&calibration, &self.folder.join("CAMERA.json"))?;
-        console::print("Calibration, from a wall over integration times and a board over distances\n")?;
-        console::print(calibrate::describe(&calibration, &report))?;
+        terminal::print("Calibration, from a wall over integration times and a board over distances\n")?;
+        terminal::print(calibrate::describe(&calibration, &report))?;
         let (mut figures, mut sections) = (serde_json::Map::new(), Vec::new());
         for exhibit in &EXHIBITS {
             let (comparison, section) = self.show(exhibit, &calibration)?;
@@ -175,22 +179,22 @@ impl Demo {
     /// Standardizes and evaluates one scene with the paper's method, and pictures it.
     fn show(&self, exhibit: &Exhibit, calibration: &Calibration) -> Outcome<(Comparison, Section)> {
         let mut input = isolux_io::open(&self.recording(exhibit.scene))?;
-        let choice = Choice { method: Method::Paper, ..Choice::default() };
-        let standardizer = Standardizer::plan(&choice, Some(calibration), input.metadata().available)?;
-        let output = self.folder.join("standardized").join(exhibit.scene);
-        let options = standardize::WriteOptions::default();
-        standardize::standardize(&mut *input, &standardizer, Some(calibration), &output, &options)?;
-        let assessment =
-            assess(&mut *input, &standardizer, Some(calibration), Pixels::Trusted, Rivals::none())?;
-        console::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;
-        console::print(evaluate::describe_rows(&assessment.comparison, |metric| {
+        let standardizer = plan(&Choice::paper(), Some(calibration), &mut input, &self.observer)?;
+        let mut sink = NativeSink::new(&self.folder.join("standardized").join(exhibit.scene), false);
+        let options = StandardizeOptions { calibration: Some(calibration), ..StandardizeOptions::default() };
+        standardize(&mut input, &standardizer, &options, &mut sink, &self.observer)?;
+        let options =
+            AssessOptions { calibration: Some(calibration), pixels: Pixels::Trusted, rivals: false };
+        let assessment = assess(&mut input, &standardizer, &options, &self.observer)?;
+        terminal::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;
+        terminal::print(evaluation::figures_table(&assessment.comparison, |metric| {
             exhibit.figures.iter().any(|wanted| metric.starts_with(wanted))
         }))?;
-        let frames = pictured_frames(&mut *input, exhibit.pictured_us)?;
-        let pictures = evaluation_page::pictures(&mut *input, &standardizer, &frames, exhibit.scene)?;
+        let frames = first_frames_at(&mut input, exhibit.pictured_us, &self.observer)?;
+        let pictures = evaluation::pictures(&mut input, &standardizer, &frames, exhibit.scene)?;
         self.montage(exhibit, &pictures)?;
         let title = format!("{}: {}", exhibit.scene, exhibit.shows.replace('-', " "));
-        let section = evaluation_page::section(exhibit.scene, &title, &standardizer, &assessment, pictures);
+        let section = evaluation::section(exhibit.scene, &title, &standardizer, &assessment, pictures);
         Ok((assessment.comparison, section))
     }
 
@@ -226,18 +230,4 @@ impl Demo {
     fn recording(&self, scene: &str) -> PathBuf {
         self.folder.join("recordings").join(scene)
     }
-}
-
-/// The first frame of each of the wanted integration times.
-fn pictured_frames(recording: &mut dyn Recording, times_us: &[f64]) -> Outcome<Vec<usize>> {
-    let mut found = vec![None; times_us.len()];
-    frames::for_each(recording, Channels::INTEGRATION_TIME, "choosing pictures", |index, frame| {
-        if let IntegrationTime::PerFrame(time_us) = frame.integration_time_us
-            && let Some(position) = times_us.iter().position(|wanted| *wanted == time_us)
-        {
-            found[position].get_or_insert(index);
-        }
-        Ok(())
-    })?;
-    Ok(found.into_iter().flatten().collect())
 }

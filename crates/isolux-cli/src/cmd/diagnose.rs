@@ -1,18 +1,14 @@
 //! `isolux diagnose`: is it already corrected, and what does the vendor's scaling do?
 
-use isolux::Channels;
 use isolux::diagnose::{
-    DiagnoseSettings, Diagnoser, Diagnosis, Effect, Estimate, Evidence, Finding, MaterialFit,
-    Outcome as Told, Scaling, State,
+    Diagnosis, Effect, Estimate, Evidence, Finding, MaterialFit, Outcome as Told, Scaling, State,
 };
-use isolux_io::Recording;
-use isolux_io::recording::Storage;
+use isolux_pipeline::diagnose;
 use serde_json::json;
 
-use crate::args::DiagnoseArgs;
-use crate::console::{self, table};
-use crate::failure::{Failure, Outcome};
-use crate::frames;
+use crate::failure::Outcome;
+use crate::options::DiagnoseArgs;
+use crate::terminal::{self, Terminal, table};
 
 /// Longest line of running text.
 const COLUMNS: usize = 100;
@@ -23,39 +19,15 @@ const LISTED: usize = 4;
 
 pub(crate) fn run(args: &DiagnoseArgs) -> Outcome {
     let mut recording = isolux_io::open(&args.recording)?;
-    let diagnosis = diagnose(&mut *recording)?;
+    let diagnosis = diagnose(&mut recording, &Terminal::default())?;
     let (path, camera) = (args.recording.display().to_string(), recording.metadata().info.camera.clone());
     if args.json {
         let verdict = diagnosis.headline();
         let told = json!({"recording": path, "camera": camera, "verdict": verdict, "diagnosis": diagnosis});
-        return console::print_json(&told);
+        return terminal::print_json(&told);
     }
     let camera = camera.map_or_else(String::new, |camera| format!(", {camera}"));
-    console::print(format!("{path}{camera}, {} frames\n\n{}", diagnosis.frames, describe(&diagnosis)))
-}
-
-/// Looks at every frame of a recording.
-pub(crate) fn diagnose(recording: &mut dyn Recording) -> Outcome<Diagnosis> {
-    let metadata = recording.metadata().clone();
-    let computed = metadata
-        .channels
-        .iter()
-        .any(|channel| channel.name == "amplitude" && channel.storage == Storage::FromPhaseSamples);
-    let settings = DiagnoseSettings {
-        principal_point: metadata.info.intrinsics.as_ref().map(|i| [i.pinhole.cx, i.pinhole.cy]),
-        amplitude_from_phase_samples: computed,
-    };
-    let mut wanted = Channels::AMPLITUDE
-        | Channels::DISTANCE
-        | Channels::INTEGRATION_TIME
-        | Channels::TARGET
-        | Channels::VENDOR_AMPLITUDE;
-    wanted.set(Channels::PHASE_SAMPLES, !computed);
-    let mut diagnoser = Diagnoser::new(metadata.shape, settings);
-    frames::for_each(recording, wanted, "diagnosing", |index, frame| {
-        diagnoser.push(frame).map_err(|error| Failure::frame(&metadata.path, index, error))
-    })?;
-    Ok(diagnoser.finish())
+    terminal::print(format!("{path}{camera}, {} frames\n\n{}", diagnosis.frames, describe(&diagnosis)))
 }
 
 /// Words first, then the figures, then what cannot be told.
@@ -98,17 +70,15 @@ fn untold(diagnosis: &Diagnosis) -> Option<String> {
 
 /// Breaks a paragraph at spaces; the lines after the first are indented twice.
 fn wrapped(text: &str, indent: &str) -> String {
-    let mut lines = vec![indent.to_owned()];
-    for word in text.split(' ') {
-        let last = lines.len() - 1;
-        if lines[last].chars().count() + word.chars().count() >= COLUMNS && !lines[last].trim().is_empty() {
-            lines.push(format!("{indent}{indent}{word}"));
-        } else {
-            let space = if lines[last].trim().is_empty() { "" } else { " " };
-            lines[last] += &format!("{space}{word}");
-        }
-    }
-    lines.join("\n")
+    let twice = indent.repeat(2);
+    let options = textwrap::Options::new(COLUMNS)
+        .initial_indent(indent)
+        .subsequent_indent(&twice)
+        .break_words(false)
+        .word_separator(textwrap::WordSeparator::AsciiSpace)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .wrap_algorithm(textwrap::WrapAlgorithm::FirstFit);
+    textwrap::fill(text, options)
 }
 
 /// Three decimals, without the sign of a negative zero.

@@ -2,12 +2,12 @@
 
 use isolux_report::page::{Block, Verdict};
 
-use crate::args::PaperArgs;
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::options::PaperArgs;
+use crate::terminal;
 
 pub(crate) fn run(args: &PaperArgs) -> Outcome {
-    let progress = console::steps();
+    let progress = terminal::spinner();
     let page = isolux_experiments::paper::page(args.seed, &mut |step| progress.set_message(step.to_owned()));
     progress.finish_and_clear();
     let page = page.map_err(Failure::data)?;
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &PaperArgs) -> Outcome {
             Verdict::Fails(why) => ("fails", format!(" ({why})")),
             Verdict::Open(why) => ("open ", format!(" ({why})")),
         };
-        console::print(format!("{word}  {}\n       {}{why}", claim.statement, claim.measured))?;
+        terminal::print(format!("{word}  {}\n       {}{why}", claim.statement, claim.measured))?;
     }
-    console::print(format!("written: {}", written.display()))
+    terminal::print(format!("written: {}", written.display()))
 }

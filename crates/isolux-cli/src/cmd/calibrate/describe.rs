@@ -6,7 +6,7 @@ use isolux::terms::cubic::Scaling;
 use isolux::terms::{FitQuality, Lut, Response, Spline};
 
 use super::{scenes, targets};
-use crate::console::table;
+use crate::terminal::table;
 
 /// The fit, for a person to judge.
 pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String {

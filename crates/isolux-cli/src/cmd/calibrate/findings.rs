@@ -2,7 +2,7 @@
 
 use isolux::calibrate::joint::{Factor, Finding};
 
-use crate::console::table;
+use crate::terminal::table;
 
 pub(super) fn findings(findings: &[Finding]) -> String {
     let heads = ["  factor", "standard error", "condition", "free spread", "verdict"];

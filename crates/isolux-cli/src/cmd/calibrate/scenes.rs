@@ -1,47 +1,10 @@
-//! Ordinary recordings: measured twice over, and what their fit found in words and tables.
+//! What the fit of ordinary recordings found, in words and tables.
 
-use std::path::Path;
-
-use isolux::Channels;
 use isolux::calibrate::scene::SceneUse;
-use isolux::calibrate::{
-    CalibrateSettings, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep,
-};
-use isolux::terms::Response;
+use isolux::calibrate::{MotionFinding, SceneReport};
 
-use super::RESPONSE_CHANNELS;
 use super::findings::findings;
-use super::linear::Linear;
-use crate::console::table;
-use crate::failure::{Failure, Outcome};
-use crate::frames;
-
-/// Looks at the recording once to learn where its poses come from, then measures it.
-pub(super) fn observations(
-    path: &Path,
-    settings: &CalibrateSettings,
-    response: Option<&Response>,
-    cameras: &mut Vec<String>,
-) -> Outcome<SceneObservations> {
-    let mut recording = isolux_io::open(path)?;
-    cameras.extend(recording.metadata().info.camera.clone());
-    let mut linear = Linear::new(path, response)?;
-    // Without a response, a still scene may tell it.
-    let besides = if linear.is_possible() { linear.channels() } else { RESPONSE_CHANNELS };
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::POSE;
-    let mut scout = MotionScout::default();
-    frames::for_each(&mut *recording, wanted, "scene, first look", |_, frame| {
-        scout.push(frame);
-        Ok(())
-    })?;
-    let intrinsics = frames::stream(recording.metadata()).intrinsics;
-    let mut sweep = SceneSweep::new(path.display().to_string(), settings, intrinsics, scout.verdict());
-    frames::for_each(&mut *recording, wanted | besides, "scene", |_, frame| {
-        let pushed = linear.frame(frame).and_then(|frame| sweep.push(frame));
-        pushed.map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
-    })?;
-    Ok(sweep.finish())
-}
+use crate::terminal::table;
 
 /// The recordings, and what they know of each factor.
 pub(super) fn report(report: &SceneReport) -> String {

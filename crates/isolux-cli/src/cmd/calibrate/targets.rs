@@ -4,7 +4,7 @@ use isolux::calibrate::TargetReport;
 use isolux::terms::{Angle, Profile};
 
 use super::findings::findings;
-use crate::console::table;
+use crate::terminal::table;
 
 /// The gain at nine places of the image, and the part of it that is supported.
 pub(super) fn profile(profile: &Profile) -> String {

@@ -5,15 +5,15 @@ mod real;
 use isolux_experiments::unseen::figure::Figure;
 use isolux_experiments::unseen::figures;
 
-use crate::args::FiguresArgs;
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::options::FiguresArgs;
+use crate::terminal;
 
 pub(crate) fn run(args: &FiguresArgs) -> Outcome {
     if let Some(folder) = &args.recordings {
         real::expect_recordings(folder)?;
     }
-    let progress = console::steps();
+    let progress = terminal::spinner();
     let found = figures::simulated(&mut |step| progress.set_message(step.to_owned()));
     let mut found = found.map_err(Failure::data)?;
     if let Some(folder) = &args.recordings {
@@ -21,9 +21,9 @@ pub(crate) fn run(args: &FiguresArgs) -> Outcome {
     }
     progress.finish_and_clear();
     if args.json {
-        return console::print_json(&found.iter().map(json).collect::<Vec<_>>());
+        return terminal::print_json(&found.iter().map(json).collect::<Vec<_>>());
     }
-    console::print(markdown(&found))
+    terminal::print(markdown(&found))
 }
 
 fn json(figure: &Figure) -> serde_json::Value {

@@ -6,9 +6,12 @@ use isolux::{Channels, Frame};
 use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
 use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
 use isolux_io::Recording;
+use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
+use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
+use isolux_pipeline::diagnose;
 
-use crate::cmd::diagnose::diagnose;
 use crate::failure::{Failure, Outcome};
+use crate::terminal::Terminal;
 
 /// Where the white squares of the checkerboard saturate, m.
 const NEAREST_M: f64 = 0.68;
@@ -26,7 +29,7 @@ pub(super) fn figures(folder: &Path, progress: &mut dyn FnMut(&str)) -> Outcome<
         let path = folder.join(name);
         if path.is_dir() {
             progress(name);
-            figures.extend(measure(&mut *isolux_io::open(&path)?)?);
+            figures.extend(measure(&mut isolux_io::open(&path)?)?);
         }
     }
     Ok(figures)
@@ -43,10 +46,10 @@ pub(super) fn expect_recordings(folder: &Path) -> Outcome {
     )))
 }
 
-type Measure = fn(&mut dyn Recording) -> Outcome<Vec<Figure>>;
+type Measure = fn(&mut Box<dyn Recording>) -> Outcome<Vec<Figure>>;
 
 /// White squares of a board at all distances, tilts and places, in frames that were not fitted on.
-fn checkerboard(recording: &mut dyn Recording) -> Outcome<Vec<Figure>> {
+fn checkerboard(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
     let metadata = recording.metadata().clone();
     let Some(intrinsics) = metadata.info.intrinsics.as_ref().map(|recorded| recorded.pinhole) else {
         return Err(Failure::data(format!(
@@ -77,8 +80,8 @@ fn checkerboard(recording: &mut dyn Recording) -> Outcome<Vec<Figure>> {
 }
 
 /// What time and place leave of a vendor's own scaling.
-fn vendor_scaling(recording: &mut dyn Recording) -> Outcome<Vec<Figure>> {
-    let diagnosis = diagnose(recording)?;
+fn vendor_scaling(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
+    let diagnosis = diagnose(recording, &Terminal::default())?;
     let scaling = diagnosis.vendor_scaling.as_ref().ok();
     let residual = scaling.map_or(f64::NAN, |scaling| scaling.residual);
     let exponent = scaling.and_then(|scaling| scaling.distance.as_ref().ok());

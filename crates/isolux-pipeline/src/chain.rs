@@ -3,9 +3,10 @@
 use isolux::denoise::TemporalMean;
 use isolux::standardize::{FrameSummary, StandardizeError};
 use isolux::{Channels, Frame, Plane, Shape, Standardized, Standardizer};
-use isolux_io::Recording;
 
-use crate::failure::Outcome;
+use crate::error::PipelineError;
+use crate::frames::read_present;
+use crate::source::FrameSource;
 
 /// The distances that a frame is to be scaled by, and the share of their variance that is left, where they depend on
 /// the frames before it; empty otherwise.
@@ -68,23 +69,22 @@ impl<'a> Chain<'a> {
     /// Reads frame `index` out of its turn, with those before it that it depends on.
     pub(crate) fn read_alone(
         &mut self,
-        recording: &mut dyn Recording,
+        source: &mut dyn FrameSource,
         index: usize,
         wanted: Channels,
         frame: &mut Frame,
-    ) -> Outcome {
+    ) -> Result<(), PipelineError> {
         if let Some(history) = &mut self.history {
             history.reset();
             let mut unused = Plane::filled(Shape::new(0, 0), f32::NAN);
             for earlier in (index + 1).saturating_sub(TemporalMean::FRAMES)..index {
-                recording.read_frame(earlier, wanted | self.standardizer.needed(), frame)?;
-                let path = recording.metadata().path.clone();
+                read_present(source, earlier, wanted | self.standardizer.needed(), frame)?;
                 history
                     .push(frame, &mut unused)
-                    .map_err(|error| crate::failure::Failure::frame(&path, earlier, error))?;
+                    .map_err(|error| PipelineError::frame(&source.facts().name, earlier)(error.into()))?;
             }
         }
-        Ok(recording.read_frame(index, wanted, frame)?)
+        read_present(source, index, wanted, frame)
     }
 
     /// Begins another pass.

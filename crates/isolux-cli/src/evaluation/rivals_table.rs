@@ -1,14 +1,14 @@
 //! The chosen chain beside its rivals, as a table for the terminal and one for the page.
 
 use isolux::evaluate::ComparisonRow;
+use isolux_pipeline::Assessment;
 use isolux_report::page::{Cell, Table};
 
-use crate::assessment::Assessment;
-use crate::cmd::evaluate::{direction, untold, written};
-use crate::console::table;
+use super::words::{direction, untold, written};
+use crate::terminal::table;
 
 /// The figures of every chain on the same frames, each with the share of values behind it.
-pub(crate) fn describe(assessment: &Assessment, chosen: &[&str]) -> String {
+pub(crate) fn rivals_table(assessment: &Assessment, chosen: &[&str]) -> String {
     let chains = chains(assessment);
     let mut rows = vec![vec!["figure".to_owned(), "better".to_owned(), "raw".to_owned()]];
     rows[0].extend(names(assessment));
@@ -28,7 +28,7 @@ pub(crate) fn describe(assessment: &Assessment, chosen: &[&str]) -> String {
 }
 
 /// The same for a page.
-pub(crate) fn page_table(id: &str, assessment: &Assessment) -> Table {
+pub(super) fn page_table(id: &str, assessment: &Assessment) -> Table {
     let chains = chains(assessment);
     let mut columns = vec!["figure".to_owned(), "better".to_owned(), "raw".to_owned()];
     columns.extend(names(assessment));

@@ -1,22 +1,21 @@
 //! The chains that an evaluation shows beside the chosen one, on the same frames: the textbook's and the paper's.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator};
-use isolux::standardize::{
-    DistanceStep, Method, ProfileStep, SpecularStep, StandardizeError, Stream, TimeStep,
-};
+use isolux::standardize::{StandardizeError, Stream};
 use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardized, Standardizer};
 
 /// What is done with a frame by an evaluator.
-pub(crate) type Pass = fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>;
+pub(super) type Pass = fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>;
 
 /// A chain beside the chosen one, and its figures.
 #[derive(Clone, Debug)]
-pub(crate) struct Standing {
-    pub(crate) name: &'static str,
+pub struct Standing {
+    /// `textbook` or `paper`.
+    pub name: &'static str,
     /// The names of its steps, in their order.
-    pub(crate) steps: Vec<&'static str>,
+    pub steps: Vec<&'static str>,
     /// Against the raw amplitude.
-    pub(crate) comparison: Comparison,
+    pub comparison: Comparison,
 }
 
 /// One rival at work.
@@ -29,34 +28,21 @@ struct Rival {
 }
 
 /// All of them.
-pub(crate) struct Rivals(Vec<Rival>);
+pub(super) struct Rivals(Vec<Rival>);
 
 impl Rivals {
     /// Nobody.
-    pub(crate) fn none() -> Self {
+    pub(super) fn none() -> Self {
         Self(Vec::new())
     }
 
     /// Those that the recording and the calibration allow and that do not do the same as `chosen`.
-    pub(crate) fn new(
+    pub(super) fn new(
         chosen: &Standardizer,
         calibration: Option<&Calibration>,
         stream: Stream,
         shape: Shape,
     ) -> Self {
-        let available = stream.channels;
-        let distance =
-            if available.contains(Channels::DISTANCE) { DistanceStep::Square } else { DistanceStep::None };
-        let time =
-            if available.contains(Channels::INTEGRATION_TIME) { TimeStep::Linear } else { TimeStep::None };
-        let textbook = Choice {
-            time: Some(time),
-            distance: Some(distance),
-            profile: Some(ProfileStep::Off),
-            specular: Some(SpecularStep::None),
-            ..Choice::default()
-        };
-        let paper = Choice { method: Method::Paper, ..Choice::default() };
         let rival = |(name, choice): (&'static str, Choice)| {
             // A chain that cannot be planned here is nobody's rival.
             let standardizer = Standardizer::plan_for(&choice, calibration, stream).ok()?;
@@ -65,16 +51,17 @@ impl Rivals {
             let flags = Plane::filled(shape, PixelFlags::empty());
             (!same).then(|| Rival { name, standardizer, out: Standardized::new(shape), flags, evaluator })
         };
-        Self([("textbook", textbook), ("paper", paper)].into_iter().filter_map(rival).collect())
+        let chains = [("textbook", Choice::textbook(stream.channels)), ("paper", Choice::paper())];
+        Self(chains.into_iter().filter_map(rival).collect())
     }
 
     /// The channels that they read.
-    pub(crate) fn needed(&self) -> Channels {
+    pub(super) fn needed(&self) -> Channels {
         self.0.iter().fold(Channels::empty(), |all, rival| all | rival.standardizer.needed())
     }
 
     /// Takes a frame. Pixels that are INVALID in `trusted`, where it is given, do not count.
-    pub(crate) fn take(
+    pub(super) fn take(
         &mut self,
         frame: &Frame,
         trusted: Option<&Plane<PixelFlags>>,
@@ -95,7 +82,7 @@ impl Rivals {
     }
 
     /// Everybody's figures, against those of the raw amplitude.
-    pub(crate) fn standings(&self, raw: &Evaluator) -> Vec<Standing> {
+    pub(super) fn standings(&self, raw: &Evaluator) -> Vec<Standing> {
         let standing = |rival: &Rival| Standing {
             name: rival.name,
             steps: rival.standardizer.steps().iter().map(|step| step.term).collect(),

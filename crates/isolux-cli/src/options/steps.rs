@@ -8,9 +8,9 @@ use isolux::standardize::{
 use isolux::terms::response::ResponseTier;
 use isolux::{Choice, DenoiseRule, SpecularRule};
 
+use super::sigma::SigmaArgs;
+use super::values::{fraction, positive};
 use crate::failure::Failure;
-use crate::option_values::{fraction, positive};
-use crate::sigma::SigmaArgs;
 
 /// Which steps to apply.
 #[derive(Debug, Default, Args)]

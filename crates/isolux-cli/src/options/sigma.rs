@@ -1,17 +1,13 @@
-//! The options of the predicted standard deviation, and where the noise comes from that it needs.
+//! The options of the predicted standard deviation.
 
 use clap::{Args, ValueEnum};
-use isolux::calibrate::NoiseSurvey;
+use isolux::Choice;
 use isolux::standardize::SigmaStep;
 use isolux::terms::NoiseModel;
 use isolux::terms::noise::AmplitudeNoise;
-use isolux::{Calibration, Channels, Choice, Standardizer};
-use isolux_io::Recording;
 
-use crate::failure::{Failure, Outcome};
-use crate::option_values::{not_negative, positive};
-use crate::step_args::StepArgs;
-use crate::{console, frames};
+use super::values::{not_negative, positive};
+use crate::failure::Failure;
 
 /// Prediction of the standard deviation.
 #[derive(Debug, Default, Args)]
@@ -68,47 +64,4 @@ impl SigmaArgs {
         }
         Ok(())
     }
-}
-
-/// Plans the chain for a recording. Where the standard deviation is asked for by name and nothing tells the noise, the
-/// recording is read once to estimate it.
-pub(crate) fn plan(
-    steps: &StepArgs,
-    calibration: Option<&Calibration>,
-    recording: &mut dyn Recording,
-) -> Outcome<Standardizer> {
-    let mut choice = steps.choice()?;
-    let (available, info) = (recording.metadata().available, &recording.metadata().info);
-    choice.modulation_frequency_hz = choice.modulation_frequency_hz.or(info.modulation_frequency_hz);
-    let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
-    if choice.sigma == SigmaStep::Required && !known && available.contains(Channels::AMPLITUDE) {
-        choice.noise = Some(estimate(recording)?);
-    }
-    let standardizer = Standardizer::plan_for(&choice, calibration, frames::stream(recording.metadata()))?;
-    standardizer.notes().iter().for_each(console::note);
-    Ok(standardizer)
-}
-
-/// The noise that the recording itself shows.
-fn estimate(recording: &mut dyn Recording) -> Outcome<NoiseModel> {
-    let path = recording.metadata().path.display().to_string();
-    let wanted = Channels::AMPLITUDE | Channels::INTEGRATION_TIME | Channels::INTENSITY;
-    let mut survey = NoiseSurvey::new();
-    frames::for_each(recording, wanted, "estimating the noise", |_, frame| {
-        survey.push(frame);
-        Ok(())
-    })?;
-    let found = survey.finish();
-    if found.spatial {
-        console::note(format!(
-            "`{path}`: no two consecutive frames share an integration time: the noise is taken from neighbouring \
-             pixels, texture included"
-        ));
-    }
-    found.fit(Vec::new()).map(|noise| noise.model()).ok_or_else(|| {
-        Failure::data(format!(
-            "`{path}`: no noise found in groups of 16 like pixels or more, consecutive frames of a still scene at one \
-             integration time expected: give the noise with --read-noise-dn and --shot-noise-dn2-per-dn"
-        ))
-    })
 }

@@ -1,24 +1,19 @@
 //! Frames made linear before anything is fitted to them, where response and recording allow it.
 
-use std::path::Path;
-
 use isolux::calibrate::CalibrateError;
 use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 use isolux::{Channels, Frame};
 
-use crate::failure::Outcome;
+use crate::source::SourceFacts;
 
 /// What makes the frames of one recording linear, and the last one that it made so.
 pub(super) struct Linear(Option<(FrameLineariser, Frame)>);
 
 impl Linear {
-    pub(super) fn new(path: &Path, response: Option<&Response>) -> Outcome<Self> {
-        let Some(response) = response else { return Ok(Self(None)) };
-        let recording = isolux_io::open(path)?;
-        let metadata = recording.metadata();
-        let lineariser = FrameLineariser::new(response, metadata.available);
-        Ok(Self(lineariser.map(|lineariser| (lineariser, Frame::new(metadata.shape)))))
+    pub(super) fn new(facts: &SourceFacts, response: Option<&Response>) -> Self {
+        let lineariser = response.and_then(|response| FrameLineariser::new(response, facts.available));
+        Self(lineariser.map(|lineariser| (lineariser, Frame::new(facts.shape))))
     }
 
     /// Whether frames are made linear at all.

@@ -1,15 +1,17 @@
 //! The page of an evaluation: figures, curves, pictures.
 
 use isolux::evaluate::ComparisonRow;
-use isolux::{Calibration, Frame, IntegrationTime, Plane, Standardized, Standardizer};
-use isolux_io::{Metadata, Recording};
+use isolux::{Calibration, Plane, Standardizer};
+use isolux_io::Metadata;
+use isolux_pipeline::assess::{MeanAtTime, SampleFrame, sample_frames};
+use isolux_pipeline::{Assessment, FrameSource};
 use isolux_report::page::{
     Axis, Block, Cell, Chart, Colours, Page, Picture, Scale, Section, Series, Stroke, Table,
 };
 
-use crate::assessment::Assessment;
-use crate::chain::Chain;
-use crate::failure::{Failure, Outcome};
+use super::rivals_table::page_table;
+use super::words::direction;
+use crate::failure::Outcome;
 
 /// Share of the valid pixels that the white end of a grey scale covers.
 const WHITE_QUANTILE: f64 = 0.995;
@@ -59,13 +61,13 @@ pub(crate) fn section(
     }
     blocks.push(Block::Table(figures_table(id, assessment)));
     if !assessment.rivals.is_empty() {
-        blocks.push(Block::Table(crate::beside::page_table(id, assessment)));
+        blocks.push(Block::Table(page_table(id, assessment)));
     }
     Section { id: id.to_owned(), title: title.to_owned(), blocks }
 }
 
 fn means_chart(id: &str, assessment: &Assessment) -> Chart {
-    let series = |name: &str, value: fn(&crate::assessment::MeanAtTime) -> f64, stroke| Series {
+    let series = |name: &str, value: fn(&MeanAtTime) -> f64, stroke| Series {
         name: name.to_owned(),
         points: assessment.means.iter().map(|mean| (mean.time_us / 1000.0, value(mean))).collect(),
         stroke,
@@ -114,7 +116,7 @@ fn figure_row(row: &ComparisonRow) -> Vec<Cell> {
         Cell::Text(unit.to_owned()),
         value(&row.before),
         value(&row.after),
-        Cell::Text(crate::cmd::evaluate::direction(row.better).to_owned()),
+        Cell::Text(direction(row.better).to_owned()),
         share(row.before_valid_fraction),
         share(row.after_valid_fraction),
     ]
@@ -122,56 +124,35 @@ fn figure_row(row: &ComparisonRow) -> Vec<Cell> {
 
 /// Some frames before and after; all raw ones on one grey scale, all standardized ones on another.
 pub(crate) fn pictures(
-    recording: &mut dyn Recording,
+    recording: &mut dyn FrameSource,
     standardizer: &Standardizer,
     indices: &[usize],
     id: &str,
 ) -> Outcome<Vec<Picture>> {
-    let metadata = recording.metadata().clone();
-    let (mut frame, mut out) = (Frame::new(metadata.shape), Standardized::new(metadata.shape));
-    let mut chain = Chain::new(standardizer);
-    let mut smoothed = chain.smoothed();
-    let (mut raw, mut standardized) = (Vec::new(), Vec::new());
-    for &index in indices {
-        let wanted = standardizer.needed() | isolux::Channels::INTEGRATION_TIME;
-        chain.read_alone(recording, index, wanted, &mut frame)?;
-        chain
-            .standardize(&frame, &mut smoothed, &mut out)
-            .map_err(|error| Failure::frame(&metadata.path, index, error))?;
-        let time = match &frame.integration_time_us {
-            IntegrationTime::PerFrame(time_us) => format!("{} ms", time_us / 1000.0),
-            _ => format!("frame {index}"),
-        };
-        raw.push((time.clone(), measured(&frame)));
-        standardized.push((time, out.amplitude.clone()));
-    }
-    let row = |kind: &str, frames: Vec<(String, Plane<f32>)>| {
-        let white = white_level(frames.iter().map(|(_, plane)| plane));
-        let picture = move |(index, (time, values)): (usize, (String, Plane<f32>))| Picture {
-            id: format!("{id}-{}-{index}", kind.to_lowercase()),
-            caption: format!("{kind}, {time}"),
-            alt: format!("{kind} amplitude at {time}"),
-            values,
-            range: (0.0, white),
-            label: format!("{} amplitude in DN", kind.to_lowercase()),
-            colours: Colours::Grey,
-        };
-        frames.into_iter().enumerate().map(picture).collect::<Vec<_>>()
-    };
-    let mut pictures = row("Raw", raw);
-    pictures.extend(row("Standardized", standardized));
+    let frames = sample_frames(recording, standardizer, indices)?;
+    let mut pictures = row(id, "Raw", &frames, |frame| &frame.raw);
+    pictures.extend(row(id, "Standardized", &frames, |frame| &frame.standardized));
     Ok(pictures)
 }
 
-/// The raw amplitude, NaN where it is no measurement.
-fn measured(frame: &Frame) -> Plane<f32> {
-    let mut plane = frame.amplitude.clone();
-    for (index, value) in plane.values_mut().iter_mut().enumerate() {
-        if !frame.is_valid(index) {
-            *value = f32::NAN;
+fn row(id: &str, kind: &str, frames: &[SampleFrame], plane: fn(&SampleFrame) -> &Plane<f32>) -> Vec<Picture> {
+    let (white, lower) = (white_level(frames.iter().map(plane)), kind.to_lowercase());
+    let picture = |(place, frame): (usize, &SampleFrame)| {
+        let time = match frame.integration_time_us {
+            Some(time_us) => format!("{} ms", time_us / 1000.0),
+            None => format!("frame {}", frame.index),
+        };
+        Picture {
+            id: format!("{id}-{lower}-{place}"),
+            caption: format!("{kind}, {time}"),
+            alt: format!("{kind} amplitude at {time}"),
+            values: plane(frame).clone(),
+            range: (0.0, white),
+            label: format!("{lower} amplitude in DN"),
+            colours: Colours::Grey,
         }
-    }
-    plane
+    };
+    frames.iter().enumerate().map(picture).collect()
 }
 
 /// The value below which nearly all valid pixels lie; 1 where there are none.

@@ -1,0 +1,134 @@
+//! Which frames of a recording make one bracket, and merging them.
+
+use isolux::standardize::{BracketMerge, FrameSummary};
+use isolux::{Channels, IntegrationTime, PixelFlags, Shape, Standardized, Standardizer};
+
+use crate::error::{FrameError, PipelineError};
+use crate::frames;
+use crate::observer::{Observer, Work};
+use crate::source::FrameSource;
+
+/// Integration times less than this factor apart are one, as everywhere.
+const SAME_TIME_RATIO: f64 = 1.01;
+
+/// Consecutive brackets: frames of a still scene at several integration times, which are merged into one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Brackets {
+    lengths: Vec<usize>,
+}
+
+impl Brackets {
+    /// Brackets of `length` frames each, the last one perhaps of fewer; without a length, one ends where an
+    /// integration time recurs.
+    ///
+    /// # Errors
+    /// [`PipelineError::BracketTime`] and [`PipelineError::NoBrackets`] where the times do not tell the ends,
+    /// [`PipelineError::LengthUnknown`] for a given length and an unknown number of frames, and those of reading.
+    pub fn plan(
+        source: &mut dyn FrameSource,
+        length: Option<u16>,
+        observer: &dyn Observer,
+    ) -> Result<Self, PipelineError> {
+        let facts = source.facts();
+        let Some(length) = length else { return Self::by_times(source, &facts.name, observer) };
+        let frame_count = facts.frame_count.ok_or(PipelineError::LengthUnknown { recording: facts.name })?;
+        let length = usize::from(length).max(1);
+        let starts = (0..frame_count).step_by(length);
+        Ok(Self { lengths: starts.map(|start| length.min(frame_count - start)).collect() })
+    }
+
+    fn by_times(
+        source: &mut dyn FrameSource,
+        name: &str,
+        observer: &dyn Observer,
+    ) -> Result<Self, PipelineError> {
+        let (mut lengths, mut times_us) = (Vec::new(), Vec::new());
+        frames::for_each(
+            source,
+            Channels::INTEGRATION_TIME,
+            Work::ReadingTimes,
+            observer,
+            |index, frame| {
+                let IntegrationTime::PerFrame(time_us) = frame.integration_time_us else {
+                    return Err(PipelineError::BracketTime { recording: name.to_owned(), frame: index });
+                };
+                let same = |known: &f64| (known / time_us).max(time_us / known) < SAME_TIME_RATIO;
+                if times_us.iter().any(same) {
+                    lengths.push(times_us.len());
+                    times_us.clear();
+                }
+                times_us.push(time_us);
+                Ok(())
+            },
+        )?;
+        lengths.push(times_us.len());
+        if lengths.iter().all(|length| *length < 2) {
+            return Err(PipelineError::NoBrackets { recording: name.to_owned() });
+        }
+        Ok(Self { lengths })
+    }
+
+    /// Number of brackets.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// In words, for the record of the steps.
+    pub(crate) fn describe(&self) -> String {
+        let (shortest, longest) =
+            (self.lengths.iter().min().unwrap_or(&0), self.lengths.iter().max().unwrap_or(&0));
+        let frames =
+            if shortest == longest { format!("{longest}") } else { format!("{shortest} to {longest}") };
+        format!("{frames} frames into one, weighted by 1/sigma², saturated pixels left out")
+    }
+}
+
+/// The bracket that is being merged.
+#[derive(Debug)]
+pub(crate) struct Merging {
+    merge: BracketMerge,
+    lengths: std::vec::IntoIter<usize>,
+    left: usize,
+    /// Pixels that every frame so far refuses for its time, at most.
+    refused: usize,
+    pub(crate) out: Standardized,
+}
+
+impl Merging {
+    /// The chain for the frames, and what merges them.
+    pub(crate) fn start(
+        standardizer: &Standardizer,
+        brackets: &Brackets,
+    ) -> Result<(Standardizer, Self), PipelineError> {
+        let (frames, merge) = standardizer.bracket().map_err(|cause| PipelineError::Merge { cause })?;
+        let mut lengths = brackets.lengths.clone().into_iter();
+        let left = lengths.next().unwrap_or(0);
+        let out = Standardized::new(Shape::new(0, 0));
+        Ok((frames, Self { merge, lengths, left, refused: usize::MAX, out }))
+    }
+
+    /// Takes the next frame; the merged one is in `out` when this was the last of its bracket.
+    pub(crate) fn push(
+        &mut self,
+        frame: &Standardized,
+        summary: &FrameSummary,
+    ) -> Result<Option<FrameSummary>, FrameError> {
+        self.refused = self.refused.min(summary.time_refused);
+        self.merge.push(frame)?;
+        self.left = self.left.saturating_sub(1);
+        if self.left > 0 {
+            return Ok(None);
+        }
+        self.left = self.lengths.next().unwrap_or(0);
+        let merged = self.merge.finish(&mut self.out);
+        let extrapolated = |flags: &&PixelFlags| {
+            flags.contains(PixelFlags::TIME_OUT_OF_RANGE) && !flags.contains(PixelFlags::INVALID)
+        };
+        Ok(Some(FrameSummary {
+            time_refused: std::mem::replace(&mut self.refused, usize::MAX),
+            time_extrapolated: self.out.flags.values().iter().filter(extrapolated).count(),
+            ..merged
+        }))
+    }
+}

@@ -1,0 +1,193 @@
+//! Sweeps, targets and scenes in, a calibration out.
+//!
+//! The protocol has two stages, since whatever is fitted after the response of the pixels needs amplitudes that it has
+//! made linear: exposure sweeps are measured and fitted first; then distance sweeps, targets and scenes are measured,
+//! linear where the response and their channels allow it, and everything else is fitted.
+
+mod linear;
+mod measure;
+
+use std::path::{Path, PathBuf};
+
+use isolux::Calibration;
+use isolux::calibrate::{CalibrateError, CalibrateSettings, ExposureFit, FitReport, Measurements};
+
+use self::measure::Measurer;
+use crate::error::PipelineError;
+use crate::observer::Observer;
+use crate::remark::Remark;
+use crate::source::{FrameSource, open_all};
+
+/// Recordings of one kind.
+type Frames<'a> = Vec<Box<dyn FrameSource + 'a>>;
+
+/// Frames to calibrate from, by what they show.
+#[derive(Default)]
+pub struct CalibrationSources<'a> {
+    /// Still scenes while the integration time is varied.
+    pub exposure_sweeps: Frames<'a>,
+    /// Flat targets at several distances.
+    pub distance_sweeps: Frames<'a>,
+    /// Labelled materials in any pose.
+    pub targets: Frames<'a>,
+    /// Ordinary recordings without a rig.
+    pub scenes: Frames<'a>,
+}
+
+/// Paths of recordings to calibrate from, by what they show.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CalibrationPaths<'a> {
+    /// Still scenes while the integration time is varied.
+    pub exposure_sweeps: &'a [PathBuf],
+    /// Flat targets at several distances.
+    pub distance_sweeps: &'a [PathBuf],
+    /// Labelled materials in any pose.
+    pub targets: &'a [PathBuf],
+    /// Ordinary recordings without a rig.
+    pub scenes: &'a [PathBuf],
+}
+
+impl<'a> CalibrationPaths<'a> {
+    /// All of them.
+    pub fn all(self) -> impl Iterator<Item = &'a Path> {
+        let sweeps = self.exposure_sweeps.iter().chain(self.distance_sweeps);
+        sweeps.chain(self.targets).chain(self.scenes).map(PathBuf::as_path)
+    }
+
+    /// Opens them.
+    ///
+    /// # Errors
+    /// [`PipelineError::Recording`] for a path that holds no recording.
+    pub fn open(self) -> Result<CalibrationSources<'static>, PipelineError> {
+        Ok(CalibrationSources {
+            exposure_sweeps: open_all(self.exposure_sweeps)?,
+            distance_sweeps: open_all(self.distance_sweeps)?,
+            targets: open_all(self.targets)?,
+            scenes: open_all(self.scenes)?,
+        })
+    }
+}
+
+/// Measures the recordings and fits what they determine, for the camera of this name, or else of the name that the
+/// recordings give. What could not be told, and why, stands in the report, or in the error's
+/// [`warnings`](PipelineError::warnings).
+///
+/// # Errors
+/// Those of [`measure`] and [`Measured::fit`].
+pub fn calibrate(
+    settings: &CalibrateSettings,
+    camera: Option<String>,
+    sources: CalibrationSources<'_>,
+    observer: &dyn Observer,
+) -> Result<(Calibration, FitReport), PipelineError> {
+    measure(settings, sources, observer)?.fit(camera, observer)
+}
+
+/// What recordings show, before the last fits.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    settings: CalibrateSettings,
+    exposure: ExposureFit,
+    measurements: Measurements,
+    /// Names of the cameras, each run of equal ones once.
+    cameras: Vec<String>,
+    /// Names of the distance sweeps.
+    distance_sweeps: Vec<String>,
+}
+
+/// Measures recordings in the order of the protocol. Distance sweeps tell the modulation frequency, targets where there
+/// are none, scenes where there are neither, unless the settings do.
+///
+/// # Errors
+/// [`PipelineError::Measure`] for recordings that cannot serve; [`PipelineError::Fit`] when an exposure sweep has no
+/// table; those of reading; [`PipelineError::Interrupted`] once the observer has cancelled.
+pub fn measure(
+    settings: &CalibrateSettings,
+    sources: CalibrationSources<'_>,
+    observer: &dyn Observer,
+) -> Result<Measured, PipelineError> {
+    let CalibrationSources { exposure_sweeps, distance_sweeps, targets, scenes } = sources;
+    let mut settings = settings.clone();
+    if settings.modulation_frequency_hz.is_none() {
+        let kinds = [&distance_sweeps, &targets, &scenes, &exposure_sweeps];
+        let told_by = kinds.into_iter().find(|sources| !sources.is_empty());
+        settings.modulation_frequency_hz =
+            told_by.and_then(|told_by| modulation_frequency_hz(told_by, observer));
+    }
+    let names = |sources: &Frames<'_>| sources.iter().map(|source| source.facts().name).collect();
+    let distance_sweep_names: Vec<String> = names(&distance_sweeps);
+    let mut measurer = Measurer { settings: &settings, observer, cameras: Vec::new() };
+    let curves = exposure_sweeps.into_iter().map(|mut source| measurer.exposure_curve(&mut *source));
+    let curves = curves.collect::<Result<Vec<_>, _>>()?;
+    let exposure = ExposureFit::new(&settings, curves).map_err(fit_error(&distance_sweep_names))?;
+    let mut measurements = Measurements::default();
+    for mut source in distance_sweeps {
+        let (delivered, linear) = measurer.reference_decays(&mut *source, exposure.response())?;
+        measurements.distance_sweeps.push(delivered);
+        measurements.linear_distance_sweeps.extend(linear);
+    }
+    if measurements.linear_distance_sweeps.len() < measurements.distance_sweeps.len() {
+        // Some linear and some compressed: one law cannot be both.
+        measurements.linear_distance_sweeps.clear();
+    }
+    for mut source in targets {
+        measurements.targets.push(measurer.target_windows(&mut *source, exposure.response())?);
+    }
+    for mut source in scenes {
+        measurements.scenes.push(measurer.scene_observations(&mut *source, exposure.response())?);
+    }
+    let mut cameras = measurer.cameras;
+    cameras.dedup();
+    Ok(Measured { settings, exposure, measurements, cameras, distance_sweeps: distance_sweep_names })
+}
+
+impl Measured {
+    /// Fits everything that the recordings determine, for the camera of this name, or else of the name that the
+    /// recordings give.
+    ///
+    /// # Errors
+    /// [`PipelineError::Fit`] when no recording was given or a term cannot be fitted from what is there.
+    pub fn fit(
+        self,
+        camera: Option<String>,
+        observer: &dyn Observer,
+    ) -> Result<(Calibration, FitReport), PipelineError> {
+        if camera.is_none() && self.cameras.len() > 1 {
+            observer.remark(Remark::CamerasDiffer { cameras: self.cameras.clone() });
+        }
+        let camera = camera.or_else(|| self.cameras.into_iter().next());
+        let fitted = self.exposure.and(&self.settings, camera, self.measurements);
+        fitted.map_err(fit_error(&self.distance_sweeps))
+    }
+
+    /// The same, as a camera would show it that delivers no more than amplitude and distance: distance sweeps as they
+    /// were delivered, none of them made linear.
+    #[must_use]
+    pub fn of_delivered_amplitudes(&self) -> Self {
+        let mut measured = self.clone();
+        measured.measurements.linear_distance_sweeps.clear();
+        measured
+    }
+
+    /// What was measured of distance sweeps, targets and scenes.
+    #[must_use]
+    pub fn measurements(&self) -> &Measurements {
+        &self.measurements
+    }
+}
+
+fn fit_error(distance_sweeps: &[String]) -> impl Fn(CalibrateError) -> PipelineError {
+    |cause| PipelineError::Fit { distance_sweeps: distance_sweeps.to_vec(), cause }
+}
+
+/// The frequency that all of these recordings name; one that does not leaves it open.
+fn modulation_frequency_hz(sources: &Frames<'_>, observer: &dyn Observer) -> Option<f64> {
+    let named = sources.iter().map(|source| source.facts().info.modulation_frequency_hz);
+    let mut frequencies: Vec<Option<f64>> = named.collect();
+    frequencies.dedup();
+    if frequencies.len() > 1 {
+        observer.remark(Remark::FrequenciesDiffer);
+        return None;
+    }
+    frequencies.first().copied().flatten()
+}

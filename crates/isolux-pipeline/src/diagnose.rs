@@ -1,0 +1,35 @@
+//! Is a stream already corrected, and what does the vendor's scaling do?
+
+use isolux::Channels;
+use isolux::diagnose::{DiagnoseSettings, Diagnoser, Diagnosis};
+
+use crate::error::PipelineError;
+use crate::frames;
+use crate::observer::{Observer, Work};
+use crate::source::FrameSource;
+
+/// Looks at every frame of a recording.
+///
+/// # Errors
+/// [`PipelineError::Frame`] for frames whose planes do not fit together, and those of reading.
+pub fn diagnose(source: &mut dyn FrameSource, observer: &dyn Observer) -> Result<Diagnosis, PipelineError> {
+    let facts = source.facts();
+    let computed = facts.amplitude_from_phase_samples;
+    let settings = DiagnoseSettings {
+        principal_point: facts.intrinsics().map(|pinhole| [pinhole.cx, pinhole.cy]),
+        amplitude_from_phase_samples: computed,
+    };
+    let mut wanted = Channels::AMPLITUDE
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::TARGET
+        | Channels::VENDOR_AMPLITUDE;
+    // An amplitude that was computed from the bins has nothing to tell beside them.
+    wanted.set(Channels::PHASE_SAMPLES, !computed);
+    let mut diagnoser = Diagnoser::new(facts.shape, settings);
+    frames::for_each(source, wanted, Work::Diagnosing, observer, |index, frame| {
+        let pushed = diagnoser.push(frame);
+        pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
+    })?;
+    Ok(diagnoser.finish())
+}

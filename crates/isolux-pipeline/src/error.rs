@@ -1,0 +1,188 @@
+//! What can go wrong between a recording and a result.
+
+use isolux::calibrate::{CalibrateError, FitWarning};
+use isolux::standardize::{MergeError, PlanError, StandardizeError};
+use isolux::{Advice, ShapeError};
+use isolux_camera::CameraError;
+use isolux_io::RecordingError;
+
+/// Why a recording has no result. Messages say what was found, what was expected and why;
+/// [`PipelineError::advice`] says what can be done about it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// The observer cancelled.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+    /// A recording cannot be read or written.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// Frames that come from elsewhere than a recording cannot be read or written.
+    #[error("`{recording}`: {cause}")]
+    Frames {
+        /// Where they come from or go to.
+        recording: String,
+        /// Why.
+        #[source]
+        cause: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// The simulated camera.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The chain cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A frame cannot be worked on.
+    #[error("`{recording}`, frame {frame}: {cause}")]
+    Frame {
+        /// The recording.
+        recording: String,
+        /// Index of the frame, from 0.
+        frame: usize,
+        /// Why.
+        #[source]
+        cause: FrameError,
+    },
+    /// A frame was asked for that a source does not have.
+    #[error("`{recording}`: no frame {frame} found, which one pass over it had")]
+    FrameMissing {
+        /// The source.
+        recording: String,
+        /// Index of the frame, from 0.
+        frame: usize,
+    },
+    /// The standard deviation is asked for, and nothing tells the noise.
+    #[error(
+        "`{recording}`: no noise found in groups of 16 like pixels or more, consecutive frames of a still scene at one \
+         integration time expected"
+    )]
+    NoNoise {
+        /// The recording.
+        recording: String,
+    },
+    /// The end of a bracket is to be told by the integration time, which a frame does not have.
+    #[error(
+        "`{recording}`, frame {frame}: found no single integration time, one expected to tell where a bracket ends"
+    )]
+    BracketTime {
+        /// The recording.
+        recording: String,
+        /// Index of the frame, from 0.
+        frame: usize,
+    },
+    /// The integration times tell no bracket of two frames.
+    #[error("`{recording}`: every integration time is followed by itself, another one expected in a bracket")]
+    NoBrackets {
+        /// The recording.
+        recording: String,
+    },
+    /// The chain cannot merge brackets.
+    #[error("brackets cannot be merged: {cause}")]
+    Merge {
+        /// Why.
+        #[source]
+        cause: MergeError,
+    },
+    /// A channel that is to be kept has the name of a new one.
+    #[error("`{recording}` already has a channel `{channel}`, which cannot be kept beside the new one")]
+    ChannelKept {
+        /// The recording.
+        recording: String,
+        /// The channel.
+        channel: String,
+    },
+    /// Channels are to be kept where frames are merged.
+    #[error(
+        "found channels to be kept of frames that are merged, one of the two expected: a merged frame has no input of its own"
+    )]
+    KeptOfMerged,
+    /// A target of frames must know their number beforehand, and the source does not.
+    #[error("`{recording}`: the number of frames is not known beforehand, which the output needs")]
+    LengthUnknown {
+        /// The source.
+        recording: String,
+    },
+    /// Standardizing left no value at all, because of the integration times.
+    #[error(
+        "`{recording}`: every measured pixel's integration time is above the calibrated range or unknown, a time \
+         inside it expected"
+    )]
+    TimesRefused {
+        /// The recording.
+        recording: String,
+    },
+    /// A recording cannot serve a calibration.
+    #[error("`{recording}`: {cause}")]
+    Measure {
+        /// The recording.
+        recording: String,
+        /// Why.
+        #[source]
+        cause: CalibrateError,
+    },
+    /// A calibration cannot be fitted from what was measured.
+    #[error("{}", fit_text(distance_sweeps, cause))]
+    Fit {
+        /// The distance sweeps, which are fitted together: a failing fit knows none of them.
+        distance_sweeps: Vec<String>,
+        /// Why.
+        #[source]
+        cause: CalibrateError,
+    },
+    /// The operating system gives no threads.
+    #[error("cannot start threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// What is wrong with one frame.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// It cannot be standardized.
+    #[error(transparent)]
+    Standardize(#[from] StandardizeError),
+    /// Its planes do not fit together.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// It cannot be merged with others.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
+}
+
+impl PipelineError {
+    /// What the user can do about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::NoNoise { .. } => Some(Advice::GiveNoise),
+            Self::BracketTime { .. } | Self::NoBrackets { .. } => Some(Advice::GiveBracketLength),
+            Self::Merge { .. } => Some(Advice::GiveOrEstimateNoise),
+            Self::ChannelKept { .. } => Some(Advice::LeaveInputOut),
+            Self::TimesRefused { .. } => Some(Advice::RecordCalibratedTimes),
+            _ => None,
+        }
+    }
+
+    /// What was left out before a fit failed, and why: often the reason.
+    #[must_use]
+    pub fn warnings(&self) -> &[FitWarning] {
+        match self {
+            Self::Fit { cause, .. } => cause.warnings(),
+            _ => &[],
+        }
+    }
+
+    /// Puts a recording and a frame to what went wrong there.
+    pub(crate) fn frame(recording: &str, frame: usize) -> impl Fn(FrameError) -> Self {
+        move |cause| Self::Frame { recording: recording.to_owned(), frame, cause }
+    }
+}
+
+fn fit_text(distance_sweeps: &[String], cause: &CalibrateError) -> String {
+    match cause {
+        CalibrateError::Cubic { source, .. } => {
+            format!("distance sweep `{}`: {source}", distance_sweeps.join("`, `"))
+        }
+        other => other.to_string(),
+    }
+}

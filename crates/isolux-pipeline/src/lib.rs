@@ -1,0 +1,76 @@
+//! Recordings in, results out: what lies between files and the core of isolux.
+//!
+//! | room | what goes in | what comes out |
+//! |---|---|---|
+//! | [`mod@plan`] | a choice of steps, a recording | a planned chain |
+//! | [`mod@standardize`] | a recording, a chain | standardized frames, in their order, in a [`standardize::FrameSink`] |
+//! | [`brackets`] | a recording | which of its frames are merged into one |
+//! | [`mod@calibrate`] | sweeps, targets, scenes | a calibration |
+//! | [`mod@assess`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain |
+//! | [`mod@diagnose`] | a recording | whether it is raw, corrected, clipped |
+//! | [`mod@overview`] | a recording | what it holds |
+//! | [`simulate`] | a simulated scene | a recording |
+//!
+//! Recordings are [`FrameSource`]s, as are frames in memory and those of the simulated camera. Whoever looks on hands in
+//! an [`Observer`]: it is told the progress and what was noticed, and may cancel. Nothing here prints, parses a
+//! command line or ends the process.
+//!
+//! ```
+//! use isolux::Choice;
+//! use isolux_camera::{CameraModel, Scene, Simulation};
+//! use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, standardize};
+//! use isolux_pipeline::{Observer, Remark, Work, plan};
+//!
+//! /// Says on a terminal what goes on.
+//! struct Terminal;
+//!
+//! impl Observer for Terminal {
+//!     fn progress(&self, work: Work, done: usize, total: Option<usize>) {
+//!         eprintln!("{work}: {done} of {total:?}");
+//!     }
+//!
+//!     fn remark(&self, remark: Remark) {
+//!         eprintln!("{remark}");
+//!     }
+//! }
+//!
+//! let folder = tempfile::tempdir()?;
+//! # let scene = Scene::builtin("wall-sweep-smoke")?;
+//! # let simulation = Simulation::new(CameraModel::preset(&scene.camera)?, scene, 1)?;
+//! # let extras = isolux_pipeline::simulate::Extras::default();
+//! # isolux_pipeline::simulate::record(&simulation, extras, &folder.path().join("wall"), false, &Terminal)?;
+//! let mut recording = isolux_io::open(&folder.path().join("wall"))?;
+//! let chain = plan(&Choice::default(), None, &mut recording, &Terminal)?;
+//! let mut sink = NativeSink::new(&folder.path().join("standardized"), false);
+//! let options = StandardizeOptions::default();
+//! let summary = standardize(&mut recording, &chain, &options, &mut sink, &Terminal)?;
+//! assert_eq!(summary.frames, recording.metadata().frame_count);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod assess;
+pub mod brackets;
+pub mod calibrate;
+mod chain;
+pub mod diagnose;
+pub mod error;
+pub mod frames;
+pub mod observer;
+pub mod overview;
+pub mod plan;
+pub mod remark;
+pub mod simulate;
+pub mod source;
+pub mod standardize;
+
+pub use assess::{AssessOptions, Assessment, assess};
+pub use brackets::Brackets;
+pub use calibrate::{CalibrationPaths, CalibrationSources, calibrate};
+pub use diagnose::diagnose;
+pub use error::PipelineError;
+pub use observer::{Observer, Unobserved, Work};
+pub use overview::{Overview, overview};
+pub use plan::plan;
+pub use remark::{Remark, Severity};
+pub use source::{FrameSource, FramesInMemory, SourceFacts};
+pub use standardize::{NativeSink, StandardizeOptions, Summary, standardize};

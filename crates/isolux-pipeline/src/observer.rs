@@ -1,0 +1,114 @@
+//! Whoever looks on while a recording is worked on: is told how far it is and what was noticed, and may stop it.
+
+use std::fmt;
+
+use crate::error::PipelineError;
+use crate::remark::Remark;
+
+/// The work that progress is told of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Work {
+    /// Standardizing the frames of a recording.
+    Standardizing,
+    /// Reading the integration times of a recording.
+    ReadingTimes,
+    /// Estimating the noise of the amplitude from a recording.
+    EstimatingNoise,
+    /// Evaluating a recording before and after standardization.
+    Evaluating,
+    /// Diagnosing a recording.
+    Diagnosing,
+    /// Measuring an exposure sweep.
+    ExposureSweep,
+    /// Measuring a distance sweep.
+    DistanceSweep,
+    /// Measuring a target.
+    Target,
+    /// Finding out how the camera moved in a scene.
+    SceneMotion,
+    /// Measuring a scene.
+    Scene,
+    /// Simulating a recording.
+    Simulating,
+}
+
+impl fmt::Display for Work {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Standardizing => "standardizing",
+            Self::ReadingTimes => "reading times",
+            Self::EstimatingNoise => "estimating the noise",
+            Self::Evaluating => "evaluating",
+            Self::Diagnosing => "diagnosing",
+            Self::ExposureSweep => "exposure sweep",
+            Self::DistanceSweep => "distance sweep",
+            Self::Target => "target",
+            Self::SceneMotion => "scene, first look",
+            Self::Scene => "scene",
+            Self::Simulating => "simulating",
+        })
+    }
+}
+
+/// What the pipeline tells while it works, and asks. Every method does nothing unless it is implemented.
+///
+/// The methods are called on the thread that called the pipeline.
+pub trait Observer {
+    /// `done` frames of `total` are done; the total is `None` where the source does not know its length. Each pass
+    /// begins with 0 frames done and, unless it fails, ends with all of `Some(total)`.
+    fn progress(&self, work: Work, done: usize, total: Option<usize>) {
+        let _ = (work, done, total);
+    }
+
+    /// True once the work is to be given up. It is asked between frames; the work then ends with
+    /// [`PipelineError::Interrupted`], and no output is left behind.
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    /// Something that the user should know, and that stands in no result.
+    fn remark(&self, remark: Remark) {
+        let _ = remark;
+    }
+}
+
+/// Looks away, and never stops anything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {}
+
+/// One pass over frames, as the observer sees it.
+pub(crate) struct Progress<'a> {
+    observer: &'a dyn Observer,
+    work: Work,
+    done: usize,
+    total: Option<usize>,
+}
+
+impl<'a> Progress<'a> {
+    /// Begins a pass.
+    pub(crate) fn start(observer: &'a dyn Observer, work: Work, total: Option<usize>) -> Self {
+        observer.progress(work, 0, total);
+        Self { observer, work, done: 0, total }
+    }
+
+    /// Fails once the observer has cancelled.
+    pub(crate) fn check(&self) -> Result<(), PipelineError> {
+        if self.observer.cancelled() { Err(PipelineError::Interrupted) } else { Ok(()) }
+    }
+
+    /// One frame more is done.
+    pub(crate) fn step(&mut self) {
+        self.done += 1;
+        self.observer.progress(self.work, self.done, self.total);
+    }
+
+    /// Ends the pass, at whatever length the source turned out to have.
+    pub(crate) fn finish(self) {
+        if self.total != Some(self.done) {
+            self.observer.progress(self.work, self.done, Some(self.done));
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Planning a chain for a recording.
+
+use isolux::calibrate::NoiseSurvey;
+use isolux::standardize::SigmaStep;
+use isolux::terms::NoiseModel;
+use isolux::{Calibration, Channels, Choice, Standardizer};
+
+use crate::error::PipelineError;
+use crate::frames;
+use crate::observer::{Observer, Work};
+use crate::remark::Remark;
+use crate::source::FrameSource;
+
+/// Plans the chain for a recording. Where the standard deviation is required and nothing tells the noise, the recording
+/// is read once to estimate it. The observer is told the notes of the plan.
+///
+/// # Errors
+/// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
+pub fn plan(
+    choice: &Choice,
+    calibration: Option<&Calibration>,
+    source: &mut dyn FrameSource,
+    observer: &dyn Observer,
+) -> Result<Standardizer, PipelineError> {
+    let facts = source.facts();
+    let mut choice = *choice;
+    choice.modulation_frequency_hz = choice.modulation_frequency_hz.or(facts.info.modulation_frequency_hz);
+    let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
+    if choice.sigma == SigmaStep::Required && !known && facts.available.contains(Channels::AMPLITUDE) {
+        choice.noise = Some(estimate_noise(source, observer)?);
+    }
+    let standardizer = Standardizer::plan_for(&choice, calibration, facts.stream())?;
+    standardizer.notes().iter().for_each(|note| observer.remark(Remark::Plan(note.clone())));
+    Ok(standardizer)
+}
+
+/// The noise of the amplitude that a recording itself shows.
+///
+/// # Errors
+/// [`PipelineError::NoNoise`] where it shows none, and those of reading.
+pub fn estimate_noise(
+    source: &mut dyn FrameSource,
+    observer: &dyn Observer,
+) -> Result<NoiseModel, PipelineError> {
+    let wanted = Channels::AMPLITUDE | Channels::INTEGRATION_TIME | Channels::INTENSITY;
+    let mut survey = NoiseSurvey::new();
+    frames::for_each(source, wanted, Work::EstimatingNoise, observer, |_, frame| {
+        survey.push(frame);
+        Ok(())
+    })?;
+    let (found, recording) = (survey.finish(), source.facts().name);
+    if found.spatial {
+        observer.remark(Remark::NoiseFromNeighbours { recording: recording.clone() });
+    }
+    found.fit(Vec::new()).map(|noise| noise.model()).ok_or(PipelineError::NoNoise { recording })
+}

@@ -1,0 +1,91 @@
+//! What the pipeline notices on its way, as data.
+
+use std::fmt;
+
+use isolux::Advice;
+use isolux::standardize::Note;
+
+/// How much a remark matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// Good to know.
+    Note,
+    /// It may spoil the result.
+    Warning,
+}
+
+/// Something that the user should know, and that stands in no result. [`Display`](fmt::Display) says what was found;
+/// [`Remark::advice`] says what can be done about it.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Remark {
+    /// Of the plan of a chain.
+    Plan(Note),
+    /// The noise of the amplitude had to be taken from neighbouring pixels.
+    NoiseFromNeighbours {
+        /// The recording.
+        recording: String,
+    },
+    /// The scene of an evaluation did not stand still.
+    SceneMoved {
+        /// Share of the scene that is elsewhere, 0 to 1.
+        share: f64,
+        /// Integration time at which it is, µs.
+        integration_time_us: f64,
+    },
+    /// The recordings of one calibration name different cameras; the first is taken.
+    CamerasDiffer {
+        /// Their names.
+        cameras: Vec<String>,
+    },
+    /// The recordings of one calibration name different modulation frequencies, or some of them none.
+    FrequenciesDiffer,
+}
+
+impl Remark {
+    /// How much it matters.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::Plan(_) | Self::NoiseFromNeighbours { .. } => Severity::Note,
+            Self::SceneMoved { .. } | Self::CamerasDiffer { .. } | Self::FrequenciesDiffer => {
+                Severity::Warning
+            }
+        }
+    }
+
+    /// What can be done about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::CamerasDiffer { .. } => Some(Advice::NameCamera),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plan(note) => note.fmt(f),
+            Self::NoiseFromNeighbours { recording } => write!(
+                f,
+                "`{recording}`: no two consecutive frames share an integration time: the noise is taken from \
+                 neighbouring pixels, texture included"
+            ),
+            Self::SceneMoved { share, integration_time_us } => write!(
+                f,
+                "the scene did not stand still ({:.0} % of it is elsewhere at {integration_time_us} µs): figures over \
+                 integration times also show its movement",
+                100.0 * share
+            ),
+            Self::CamerasDiffer { cameras } => {
+                write!(f, "the recordings name different cameras (`{}`)", cameras.join("`, `"))
+            }
+            Self::FrequenciesDiffer => f.write_str(
+                "the recordings name different modulation frequencies, or some of them none: the spline goes without \
+                 the harmonic, and the response repairs no distance",
+            ),
+        }
+    }
+}
