@@ -17,7 +17,7 @@ pub(crate) fn for_each(
     what: &str,
     mut visit: impl FnMut(usize, &Frame) -> Outcome,
 ) -> Outcome {
-    let count = recording.metadata().frame_count;
+    let count = recording.metadata().require_frame_count()?;
     let progress = console::progress(what, count);
     let mut frame = Frame::new(recording.metadata().shape);
     for index in 0..count {

@@ -11,7 +11,10 @@ mod whole_file;
 
 pub use calibration_file::{CalibrationFileError, read_calibration, write_calibration};
 pub use error::RecordingError;
-pub use recording::{ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter, open};
+pub use recording::{
+    Assembled, ChannelSource, ChannelSpec, ElementType, Metadata, Recording, RecordingInfo, RecordingWriter,
+    for_each_frame, open,
+};
 pub use whole_file::write_whole;
 
 /// The library example of the README, compiled as a test.

@@ -72,7 +72,7 @@ fn report(recording: &mut dyn Recording) -> Outcome<Report> {
     Ok(Report {
         recording: metadata.path.display().to_string(),
         camera: metadata.info.camera.clone(),
-        frames: metadata.frame_count,
+        frames: metadata.require_frame_count()?,
         height: metadata.shape.height,
         width: metadata.shape.width,
         channels: metadata.channels.iter().map(channel).collect(),
@@ -109,15 +109,16 @@ fn sample(recording: &mut dyn Recording, metadata: &Metadata) -> Outcome<Sample>
     let mut sample = Sample::default();
     let mut frame = Frame::new(metadata.shape);
     let wanted = metadata.available & (Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME);
-    let count = metadata.frame_count.min(SAMPLED_FRAMES);
+    let frame_count = metadata.require_frame_count()?;
+    let count = frame_count.min(SAMPLED_FRAMES);
     for step in 0..count {
         // From the first to the last frame.
-        let index = if count == 1 { 0 } else { step * (metadata.frame_count - 1) / (count - 1) };
+        let index = if count == 1 { 0 } else { step * (frame_count - 1) / (count - 1) };
         recording.read_frame(index, wanted, &mut frame)?;
         sample.add(&frame, wanted);
     }
     let scalar_times = metadata.available.contains(Channels::INTEGRATION_TIME) && !sample.per_pixel;
-    for index in 0..if scalar_times { metadata.frame_count } else { 0 } {
+    for index in 0..if scalar_times { frame_count } else { 0 } {
         recording.read_frame(index, Channels::INTEGRATION_TIME, &mut frame)?;
         sample.add_time(&frame.integration_time_us, 1);
     }
@@ -169,16 +170,10 @@ fn spread(mut values: Vec<f64>) -> Option<Spread> {
 }
 
 fn channel(channel: &isolux_io::recording::ChannelInfo) -> Channel {
-    let storage = match channel.storage {
+    let storage = match &channel.storage {
         Storage::Constant => "constant in recording.json".to_owned(),
         Storage::FromPhaseSamples => "computed from phase_samples".to_owned(),
-        Storage::File { byte_order, fortran_order, deflated } => {
-            let mut words = Vec::new();
-            words.extend((byte_order == isolux_io::recording::ByteOrder::Big).then_some("big-endian"));
-            words.extend(fortran_order.then_some("Fortran order"));
-            words.extend(deflated.then_some("deflated"));
-            words.join(", ")
-        }
+        Storage::Stored { note } => note.clone(),
     };
     let (name, frame_dims) = (channel.name.clone(), channel.frame_dims.clone());
     Channel { name, element: channel.element.name(), frame_dims, storage }

@@ -20,7 +20,7 @@ impl Brackets {
     /// Brackets of `length` frames each, the last one perhaps of fewer; without a length, one ends where an
     /// integration time recurs.
     pub(crate) fn plan(recording: &mut dyn Recording, length: Option<u16>) -> Outcome<Self> {
-        let frame_count = recording.metadata().frame_count;
+        let frame_count = recording.metadata().require_frame_count()?;
         if let Some(length) = length {
             let length = usize::from(length);
             let starts = (0..frame_count).step_by(length);

@@ -111,8 +111,8 @@ pub(crate) fn standardize(
         Some((frames, merging)) => (&*frames, Some(merging)),
         None => (standardizer, None),
     };
-    let frame_count =
-        options.brackets.as_ref().map_or(metadata.frame_count, |brackets| brackets.lengths.len());
+    let input_frames = metadata.require_frame_count()?;
+    let frame_count = options.brackets.as_ref().map_or(input_frames, |brackets| brackets.lengths.len());
     let mut writer = RecordingWriter::create(output, frame_count, channels, options.overwrite)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))
@@ -123,10 +123,10 @@ pub(crate) fn standardize(
     let slots = pool.current_num_threads().min(affordable_slots(&metadata, &kept, &chain, merging.is_some()));
     let mut batch: Vec<Slot> = (0..slots).map(|_| Slot::new(&metadata, kept.len(), &chain)).collect();
     let mut summary = Summary::default();
-    let progress = console::progress("standardizing", metadata.frame_count);
-    for start in (0..metadata.frame_count).step_by(batch.len()) {
+    let progress = console::progress("standardizing", input_frames);
+    for start in (0..input_frames).step_by(batch.len()) {
         interrupt::check()?;
-        let count = batch.len().min(metadata.frame_count - start);
+        let count = batch.len().min(input_frames - start);
         for (offset, slot) in batch[..count].iter_mut().enumerate() {
             recording.read_frame(start + offset, standardizer.needed(), &mut slot.frame)?;
             chain
