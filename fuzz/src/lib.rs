@@ -20,7 +20,7 @@ pub fn with_file(name: &str, bytes: &[u8], test: impl FnOnce(&Path, &Path)) {
 /// Opens a recording and reads some frames, in an order that goes forth and back.
 pub fn read_some(path: &Path) {
     let Ok(mut recording) = isolux_io::open(path) else { return };
-    let count = recording.metadata().frame_count;
+    let Some(count) = recording.metadata().frame_count else { return };
     let mut frame = Frame::new(recording.metadata().shape);
     for index in [0, 1, count - 1, 0] {
         let _ = recording.read_frame(index, Channels::all(), &mut frame);

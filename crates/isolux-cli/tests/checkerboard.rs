@@ -20,7 +20,7 @@ fn white_squares_are_one_material_over_distance_tilt_and_place() {
     let mut recording = isolux_io::open(&path).unwrap();
     let metadata = recording.metadata().clone();
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;
-    let frames: Vec<Frame> = (0..metadata.frame_count)
+    let frames: Vec<Frame> = (0..metadata.frame_count.unwrap())
         .map(|index| {
             let mut frame = Frame::new(metadata.shape);
             recording.read_frame(index, wanted, &mut frame).unwrap();

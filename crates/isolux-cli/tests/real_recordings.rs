@@ -35,7 +35,7 @@ fn is_invalid(flags: f32) -> bool {
 fn assert_nan_is_invalid(output: &Path) -> usize {
     let mut recording = isolux_io::open(output).unwrap();
     let mut valid = 0;
-    for index in 0..recording.metadata().frame_count {
+    for index in 0..recording.metadata().frame_count.unwrap() {
         let values = image(&mut *recording, "standardized_amplitude", index);
         let flags = image(&mut *recording, "flags", index);
         for (pixel, (value, flags)) in values.into_iter().zip(flags).enumerate() {
@@ -94,7 +94,7 @@ fn pixels_of_unlike_integration_times_become_consistent() {
     let mut standardized = isolux_io::open(&output).unwrap();
     let (mut raw, mut ours, mut long_times, mut pixels) = (Vec::new(), Vec::new(), 0, 0);
     let mut frame = Frame::new(recorded.metadata().shape);
-    for index in 0..recorded.metadata().frame_count {
+    for index in 0..recorded.metadata().frame_count.unwrap() {
         recorded.read_frame(index, Channels::AMPLITUDE | Channels::INTEGRATION_TIME, &mut frame).unwrap();
         let vendor = image(&mut *recorded, "vendor_amplitude", index);
         let confidence = image(&mut *recorded, "vendor_confidence", index);

@@ -51,7 +51,7 @@ proptest! {
         let path = folder.path().join(if packed { "recording.npz" } else { "recording" });
         record(&written, &path);
         let mut recording = isolux_io::open(&path).unwrap();
-        prop_assert_eq!((recording.metadata().frame_count, recording.metadata().shape), (written.len(), SHAPE));
+        prop_assert_eq!((recording.metadata().frame_count, recording.metadata().shape), (Some(written.len()), SHAPE));
         let mut frame = Frame::new(SHAPE);
         for (index, written) in written.iter().enumerate().rev() {
             recording.read_frame(index, CHANNELS, &mut frame).unwrap();

@@ -103,6 +103,25 @@ pub enum RecordingError {
         /// Number of frames.
         frame_count: usize,
     },
+    /// A frame was asked for that cannot be reached any more.
+    #[error(
+        "`{}`: frame {index} was asked for after it had been passed; expected an order from front to back: this \
+         recording can be read only once", path.display()
+    )]
+    Passed {
+        /// The recording.
+        path: PathBuf,
+        /// Index that was asked for.
+        index: usize,
+    },
+    /// The number of frames is needed before the first one is read.
+    #[error(
+        "`{}`: found a recording whose number of frames is known only at its end, expected one that tells it", path.display()
+    )]
+    UnknownLength {
+        /// The recording.
+        path: PathBuf,
+    },
     /// A channel was asked for that is not there.
     #[error("`{}` has no channel `{channel}`; it holds {found}", path.display())]
     NoChannel {
@@ -164,5 +183,13 @@ pub(crate) fn listing<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
         [] => "nothing".to_owned(),
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// Dimensions for a message: `(3, 4)`, `(3,)`, `()`.
+pub(crate) fn dims_text(dims: &[usize]) -> String {
+    match dims {
+        [one] => format!("({one},)"),
+        _ => format!("({})", dims.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     }
 }

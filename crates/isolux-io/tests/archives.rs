@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use common::{Array, Folder, archive, failure, read};
 use isolux::Channels;
 use isolux_io::open;
-use isolux_io::recording::Storage;
+use isolux_io::recording::{Access, Storage};
 use zip::CompressionMethod::{self, Deflated, Stored};
 use zip::write::SimpleFileOptions;
 
@@ -39,10 +39,11 @@ fn stored_and_deflated_archives_read_like_folders_in_any_order() {
     for method in [Stored, Deflated] {
         let folder = Folder::new();
         let mut recording = open(&pack(&folder, method)).unwrap();
-        let Storage::File { deflated, fortran_order, .. } = recording.metadata().channels[1].storage else {
+        let Storage::Stored { note } = &recording.metadata().channels[1].storage else {
             panic!("the distance is in a file")
         };
-        assert_eq!((deflated, fortran_order), (method == Deflated, true));
+        assert_eq!(note, if method == Deflated { "Fortran order, deflated" } else { "Fortran order" });
+        assert_eq!(recording.metadata().access, Access::Rewindable);
         for index in [0, 1, 2, 4, 3, 3, 0] {
             assert_eq!(read(&mut *recording, index).unwrap(), read(&mut *expected, index).unwrap());
         }

@@ -30,7 +30,7 @@ fn sparse(folder: &Folder, name: &str, fortran: bool, frames: usize) -> usize {
 fn read_all(folder: &Folder) {
     let mut recording = folder.open().unwrap();
     let mut frame = Frame::new(recording.metadata().shape);
-    for index in 0..recording.metadata().frame_count {
+    for index in 0..recording.metadata().require_frame_count().unwrap() {
         recording.read_frame(index, Channels::all(), &mut frame).unwrap();
     }
 }

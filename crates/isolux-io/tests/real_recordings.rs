@@ -35,7 +35,7 @@ fn every_recording_reads_from_the_first_frame_to_the_last() {
             continue;
         }
         let mut recording = open(&folder).unwrap();
-        for index in 0..recording.metadata().frame_count {
+        for index in 0..recording.metadata().require_frame_count().unwrap() {
             let frame = read(&mut *recording, index).unwrap();
             frame.check_shapes().unwrap();
             let valid = (0..frame.shape().pixels()).filter(|&pixel| frame.is_valid(pixel)).count();
@@ -64,7 +64,7 @@ fn saturated_squares_are_flagged_and_depth_is_made_radial() {
     assert_eq!(available, Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET);
     let mut depth_mm = isolux::Plane::filled(recording.metadata().shape, 0.0);
     let mut saturated = 0;
-    for index in 0..recording.metadata().frame_count {
+    for index in 0..recording.metadata().require_frame_count().unwrap() {
         let frame = read(&mut *recording, index).unwrap();
         saturated += frame.flags.values().iter().filter(|f| f.contains(PixelFlags::SATURATED)).count();
         recording.read_plane("distance", index, &mut depth_mm).unwrap();

@@ -41,7 +41,7 @@ pub(crate) fn run(args: &InfoArgs) -> Outcome {
     let report = Report {
         recording: metadata.path.display().to_string(),
         camera: metadata.info.camera.clone(),
-        frames: metadata.frame_count,
+        frames: metadata.require_frame_count()?,
         height: metadata.shape.height,
         width: metadata.shape.width,
         channels: metadata.channels.iter().map(channel).collect(),
@@ -52,16 +52,10 @@ pub(crate) fn run(args: &InfoArgs) -> Outcome {
 }
 
 fn channel(channel: &isolux_io::recording::ChannelInfo) -> Channel {
-    let storage = match channel.storage {
+    let storage = match &channel.storage {
         Storage::Constant => "constant in recording.json".to_owned(),
         Storage::FromPhaseSamples => "computed from phase_samples".to_owned(),
-        Storage::File { byte_order, fortran_order, deflated } => {
-            let mut words = Vec::new();
-            words.extend((byte_order == isolux_io::recording::ByteOrder::Big).then_some("big-endian"));
-            words.extend(fortran_order.then_some("Fortran order"));
-            words.extend(deflated.then_some("deflated"));
-            words.join(", ")
-        }
+        Storage::Stored { note } => note.clone(),
     };
     let (name, frame_dims) = (channel.name.clone(), channel.frame_dims.clone());
     Channel { name, element: channel.element.name(), frame_dims, storage }

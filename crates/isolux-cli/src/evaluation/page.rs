@@ -33,7 +33,8 @@ pub(crate) fn page(
         title: format!("{name}: before and after standardization"),
         lead: format!(
             "{} frames of {} by {camera}, standardized with {by}.",
-            metadata.frame_count, metadata.shape
+            metadata.frame_count.map_or("an unknown number of".to_owned(), |count| count.to_string()),
+            metadata.shape
         ),
         sections: vec![section("recording", "Before and after", standardizer, assessment, pictures)],
         colophon: format!("Made by isolux {} with `isolux evaluate`.", env!("CARGO_PKG_VERSION")),

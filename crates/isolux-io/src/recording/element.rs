@@ -42,19 +42,24 @@ pub enum ByteOrder {
     Big,
 }
 
-const TYPES: [(ElementType, &str, &str, usize); 12] = [
-    (ElementType::Bool, "bool", "|b1", 1),
-    (ElementType::U8, "uint8", "|u1", 1),
-    (ElementType::U16, "uint16", "<u2", 2),
-    (ElementType::U32, "uint32", "<u4", 4),
-    (ElementType::U64, "uint64", "<u8", 8),
-    (ElementType::I8, "int8", "|i1", 1),
-    (ElementType::I16, "int16", "<i2", 2),
-    (ElementType::I32, "int32", "<i4", 4),
-    (ElementType::I64, "int64", "<i8", 8),
-    (ElementType::F16, "float16", "<f2", 2),
-    (ElementType::F32, "float32", "<f4", 4),
-    (ElementType::F64, "float64", "<f8", 8),
+impl ByteOrder {
+    /// The order of the machine that this runs on: that of values in memory.
+    pub const NATIVE: Self = if cfg!(target_endian = "big") { Self::Big } else { Self::Little };
+}
+
+const TYPES: [(ElementType, &str, usize); 12] = [
+    (ElementType::Bool, "bool", 1),
+    (ElementType::U8, "uint8", 1),
+    (ElementType::U16, "uint16", 2),
+    (ElementType::U32, "uint32", 4),
+    (ElementType::U64, "uint64", 8),
+    (ElementType::I8, "int8", 1),
+    (ElementType::I16, "int16", 2),
+    (ElementType::I32, "int32", 4),
+    (ElementType::I64, "int64", 8),
+    (ElementType::F16, "float16", 2),
+    (ElementType::F32, "float32", 4),
+    (ElementType::F64, "float64", 8),
 ];
 
 impl ElementType {
@@ -66,10 +71,10 @@ impl ElementType {
     /// Bytes of one value.
     #[must_use]
     pub const fn size_bytes(self) -> usize {
-        TYPES[self as usize].3
+        TYPES[self as usize].2
     }
 
-    /// NumPy's name of the type, e.g. `uint16`.
+    /// The name of the type, e.g. `uint16` or `float32`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         TYPES[self as usize].1
@@ -79,23 +84,6 @@ impl ElementType {
     #[must_use]
     pub const fn is_integer(self) -> bool {
         !matches!(self, Self::F16 | Self::F32 | Self::F64)
-    }
-
-    /// The `descr` of an npy header for little-endian values.
-    pub(crate) const fn npy_descr(self) -> &'static str {
-        TYPES[self as usize].2
-    }
-
-    /// Type and byte order from the `descr` of an npy header; `None` for what is not a plain real number.
-    pub(crate) fn from_npy_descr(descr: &str) -> Option<(Self, ByteOrder)> {
-        let (order, code) = descr.split_at_checked(1)?;
-        let &(element, _, _, size) = TYPES.iter().find(|row| &row.2[1..] == code)?;
-        match order {
-            "<" => Some((element, ByteOrder::Little)),
-            ">" => Some((element, ByteOrder::Big)),
-            "|" if size == 1 => Some((element, ByteOrder::Little)),
-            _ => None,
-        }
     }
 }
 
@@ -112,6 +100,12 @@ pub trait Element: Copy {
 
     /// Appends the values' little-endian bytes.
     fn append_little_endian(values: &[Self], bytes: &mut Vec<u8>);
+}
+
+/// A number type whose values in memory can be looked at as bytes.
+pub trait Number: Element {
+    /// The bytes of the values, in the machine's own order.
+    fn as_bytes(values: &[Self]) -> &[u8];
 }
 
 trait Stored: Copy {
@@ -143,6 +137,12 @@ macro_rules! stored {
                 bytes.resize(start + size_of_val(values), 0);
                 let (out, _) = bytes[start..].as_chunks_mut();
                 out.iter_mut().zip(values).for_each(|(out, value)| *out = value.to_le_bytes());
+            }
+        }
+
+        impl Number for $type {
+            fn as_bytes(values: &[Self]) -> &[u8] {
+                bytemuck::cast_slice(values)
             }
         }
     )*};
@@ -218,15 +218,6 @@ mod tests {
     fn the_table_is_in_the_order_of_the_types() {
         for (position, element) in ElementType::all().enumerate() {
             assert_eq!(element as usize, position);
-        }
-    }
-
-    #[test]
-    fn descriptions_of_real_numbers_are_understood_and_others_are_not() {
-        assert_eq!(ElementType::from_npy_descr(">u2"), Some((ElementType::U16, ByteOrder::Big)));
-        assert_eq!(ElementType::from_npy_descr("|b1"), Some((ElementType::Bool, ByteOrder::Little)));
-        for descr in ["|O", "<U3", "<c8", "<f16", "|u2", "=f4", "", "é4", "<m8[us]"] {
-            assert_eq!(ElementType::from_npy_descr(descr), None, "{descr}");
         }
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use isolux::{Channels, Shape};
 
-use super::element::{ByteOrder, ElementType};
+use super::element::ElementType;
 use super::info::RecordingInfo;
 use crate::error::{RecordingError, listing};
 
@@ -13,44 +13,55 @@ use crate::error::{RecordingError, listing};
 pub struct Metadata {
     /// The path it was opened by.
     pub path: PathBuf,
-    /// Number of frames, at least 1.
-    pub frame_count: usize,
+    /// Number of frames; `None` where the recording does not tell it before its end. Once the end has been
+    /// reached, it is known.
+    pub frame_count: Option<usize>,
+    /// In which order frames can be read.
+    pub access: Access,
     /// Height and width of every frame.
     pub shape: Shape,
-    /// The channels, stored ones by name, then those that reading computes.
+    /// The channels, stored ones first, then those that reading computes.
     pub channels: Vec<ChannelInfo>,
     /// The channels that [`read_frame`](super::Recording::read_frame) can fill.
     pub available: Channels,
-    /// `recording.json`; all fields empty where there is none.
+    /// What is known besides the channels (of the native format, `recording.json`); all fields empty where
+    /// nothing is.
     pub info: RecordingInfo,
+}
+
+/// In which order the frames of a recording can be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Any order; every frame takes the same time.
+    Random,
+    /// Any order, but a frame is reached by passing all those before it; going back starts anew.
+    Rewindable,
+    /// From front to back, once: a frame that has been passed is gone.
+    Once,
 }
 
 /// One channel of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelInfo {
-    /// Its name: that of its file, without `.npy`.
+    /// Its name.
     pub name: String,
     /// Type of its values, as stored.
     pub element: ElementType,
     /// Dimensions of one frame: `[]` one number, `[H, W]` an image, `[4, H, W]` bins, `[4, 4]` a pose.
     pub frame_dims: Vec<usize>,
-    /// How it is stored.
+    /// Where its values come from.
     pub storage: Storage,
 }
 
-/// How a channel is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Where a channel's values come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Storage {
-    /// An array in a file or archive.
-    File {
-        /// Byte order of its values.
-        byte_order: ByteOrder,
-        /// True where the first index varies fastest; such files are read in batches of frames.
-        fortran_order: bool,
-        /// True for a compressed member of an archive; such members are read from front to back.
-        deflated: bool,
+    /// The recording holds a frame of it for each frame.
+    Stored {
+        /// What a reader may want to know of how it is stored, such as "deflated"; often empty.
+        note: String,
     },
-    /// One value for all frames, in `recording.json`.
+    /// One value for all frames, from [`Metadata::info`].
     Constant,
     /// Computed from the phase samples when a frame is read.
     FromPhaseSamples,
@@ -63,14 +74,22 @@ impl ChannelInfo {
         self.frame_dims.iter().product::<usize>() * self.element.size_bytes()
     }
 
-    /// True for a channel that is in a file, not computed or constant: it can be read verbatim.
+    /// True for a channel that is stored, not computed or constant: it can be read verbatim.
     #[must_use]
     pub fn is_stored(&self) -> bool {
-        matches!(self.storage, Storage::File { .. })
+        matches!(self.storage, Storage::Stored { .. })
     }
 }
 
 impl Metadata {
+    /// The number of frames, for work that must know it before the first frame is read.
+    ///
+    /// # Errors
+    /// [`RecordingError::UnknownLength`].
+    pub fn require_frame_count(&self) -> Result<usize, RecordingError> {
+        self.frame_count.ok_or_else(|| RecordingError::UnknownLength { path: self.path.clone() })
+    }
+
     /// The stored channel of this name.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&ChannelInfo> {
@@ -87,24 +106,5 @@ impl Metadata {
             channel: name.to_owned(),
             found: listing(self.channels.iter().filter(|c| c.is_stored()).map(|c| c.name.as_str())),
         })
-    }
-
-    /// Refuses an index beyond the last frame.
-    ///
-    /// # Errors
-    /// [`RecordingError::NoFrame`].
-    pub fn check_frame(&self, index: usize) -> Result<(), RecordingError> {
-        if index < self.frame_count {
-            return Ok(());
-        }
-        Err(RecordingError::NoFrame { path: self.path.clone(), index, frame_count: self.frame_count })
-    }
-}
-
-/// A shape as NumPy prints it: `(3, 4)`, `(3,)`, `()`.
-pub(crate) fn dims_text(dims: &[usize]) -> String {
-    match dims {
-        [one] => format!("({one},)"),
-        _ => format!("({})", dims.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     }
 }

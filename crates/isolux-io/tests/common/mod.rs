@@ -165,7 +165,8 @@ pub fn read(recording: &mut dyn Recording, index: usize) -> Result<Frame, Record
 /// The message of opening, or else of reading all frames.
 pub fn failure(path: &Path) -> String {
     let result = open(path).and_then(|mut recording| {
-        (0..recording.metadata().frame_count).try_for_each(|index| read(&mut *recording, index).map(drop))
+        let count = recording.metadata().require_frame_count()?;
+        (0..count).try_for_each(|index| read(&mut *recording, index).map(drop))
     });
     result.expect_err("it was read").to_string()
 }

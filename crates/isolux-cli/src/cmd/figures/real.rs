@@ -59,7 +59,7 @@ fn checkerboard(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
     };
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;
     let mut frames = Vec::new();
-    for index in 0..metadata.frame_count {
+    for index in 0..metadata.require_frame_count()? {
         let mut frame = Frame::new(metadata.shape);
         recording.read_frame(index, wanted, &mut frame)?;
         frames.push(frame);

@@ -6,15 +6,13 @@ use std::path::{Path, PathBuf};
 
 use super::gathered::GatheredFrames;
 use super::mapped::MappedFrames;
-use super::npy::{HeaderError, NpyHeader};
 use super::sequential::SequentialFrames;
 use super::stream::{Packing, Section, SectionStream};
-use crate::error::RecordingError;
-use crate::recording::element::{ByteOrder, ElementType};
-use crate::recording::metadata::{Storage, dims_text};
-
-/// The largest cameras have a few million pixels: a claim of more than this is damage, or an attack on memory.
-const MOST_FRAME_VALUES: u64 = 1 << 26;
+use crate::error::{RecordingError, dims_text};
+use crate::recording::channels;
+use crate::recording::element::ByteOrder;
+use crate::recording::npy::{HeaderError, NpyHeader};
+use crate::recording::source::{RawFrame, StoredChannel};
 
 /// An array whose header has been read and whose size has been checked against the bytes that are there.
 pub(crate) struct ArrayFile {
@@ -64,17 +62,11 @@ impl ArrayFile {
         let Self { name, path, header, file, section } = self;
         let (frame_count, frame_dims) = header.dims.split_first().map_or((1, &[][..]), |(n, d)| (*n, d));
         let size = header.element.size_bytes();
-        let values = frame_dims.iter().try_fold(1u64, |product, &dim| product.checked_mul(dim as u64));
-        let values = values.filter(|&values| values <= MOST_FRAME_VALUES).ok_or_else(|| {
-            let found = format!("frames of {}", dims_text(frame_dims));
-            RecordingError::content(&path, found, format!("at most {MOST_FRAME_VALUES} values in a frame"))
-        })?;
-        let frame_bytes = values as usize * size;
-        let storage = Storage::File {
-            byte_order: header.byte_order,
-            fortran_order: header.fortran_order,
-            deflated: section.packing != Packing::Plain,
-        };
+        let frame_bytes = channels::frame_values(&path, frame_dims)? * size;
+        let mut note = Vec::new();
+        note.extend((header.byte_order == ByteOrder::Big).then_some("big-endian"));
+        note.extend(header.fortran_order.then_some("Fortran order"));
+        note.extend((section.packing != Packing::Plain).then_some("deflated"));
         let start = header.data_offset;
         let frames = if header.is_c_order() && section.packing == Packing::Plain {
             Frames::Mapped(MappedFrames::new(file, section.start + start, frame_bytes, frame_count))
@@ -86,18 +78,13 @@ impl ArrayFile {
                 Frames::Gathered(GatheredFrames::new(stream, start, &header.dims, size, batch_bytes))
             }
         };
-        Ok(Channel {
-            name,
-            element: header.element,
-            byte_order: header.byte_order,
-            frame_dims: frame_dims.to_vec(),
-            storage,
-            path,
-            frames,
-        })
+        let frame_dims = frame_dims.to_vec();
+        let stored = StoredChannel { name, path, element: header.element, frame_dims, note: note.join(", ") };
+        Ok(Channel { stored, byte_order: header.byte_order, frames })
     }
 }
 
+#[derive(Debug)]
 enum Frames {
     Mapped(MappedFrames),
     Sequential(SequentialFrames),
@@ -105,24 +92,38 @@ enum Frames {
 }
 
 /// A channel that is ready to be read.
+#[derive(Debug)]
 pub(crate) struct Channel {
-    pub(crate) name: String,
-    pub(crate) element: ElementType,
-    pub(crate) byte_order: ByteOrder,
-    pub(crate) frame_dims: Vec<usize>,
-    pub(crate) storage: Storage,
-    pub(crate) path: PathBuf,
+    pub(crate) stored: StoredChannel,
+    byte_order: ByteOrder,
     frames: Frames,
 }
 
 impl Channel {
-    /// The bytes of one frame, in C order, in the file's byte order. `index` must be below the frame count.
-    pub(crate) fn frame(&mut self, index: usize) -> Result<&[u8], RecordingError> {
+    /// True where every frame takes the same time.
+    pub(crate) fn is_random_access(&self) -> bool {
+        matches!(self.frames, Frames::Mapped(_))
+    }
+
+    /// Makes `index`, which must be below the frame count, the current frame.
+    pub(crate) fn load(&mut self, index: usize) -> Result<(), RecordingError> {
+        let path = &self.stored.path;
         match &mut self.frames {
-            Frames::Mapped(frames) => frames.frame(index, &self.path),
-            Frames::Sequential(frames) => frames.frame(index).map_err(|error| read_error(&self.path, error)),
-            Frames::Gathered(frames) => frames.frame(index).map_err(|error| read_error(&self.path, error)),
+            Frames::Mapped(frames) => frames.load(index, path),
+            Frames::Sequential(frames) => frames.load(index).map_err(|error| read_error(path, error)),
+            Frames::Gathered(frames) => frames.load(index).map_err(|error| read_error(path, error)),
         }
+    }
+
+    /// The current frame, in C order, in the file's byte order; empty where there is none.
+    pub(crate) fn raw(&self) -> RawFrame<'_> {
+        let bytes = match &self.frames {
+            Frames::Mapped(frames) => frames.bytes(),
+            Frames::Sequential(frames) => frames.bytes(),
+            Frames::Gathered(frames) => frames.bytes(),
+        };
+        let StoredChannel { element, frame_dims, .. } = &self.stored;
+        RawFrame { element: *element, byte_order: self.byte_order, dims: frame_dims, bytes }
     }
 }
 

@@ -10,18 +10,21 @@ use super::stream::SectionStream;
 const BLOCK_BYTES: usize = 1 << 20;
 
 /// Frames gathered in batches.
+#[derive(Debug)]
 pub(crate) struct GatheredFrames {
     stream: SectionStream,
     /// Byte of the first value.
     start: u64,
     frame_count: usize,
-    /// Dimensions of one frame.
     frame_dims: Vec<usize>,
     element_bytes: usize,
     frames_per_batch: usize,
+    /// The first frame of the batch.
     first: Option<usize>,
     batch: Vec<u8>,
     block: Vec<u8>,
+    /// Byte of the current frame in the batch.
+    begin: usize,
 }
 
 impl GatheredFrames {
@@ -47,45 +50,56 @@ impl GatheredFrames {
             first: None,
             batch: Vec::new(),
             block: Vec::new(),
+            begin: 0,
         }
     }
 
-    /// The bytes of frame `index` in C order.
-    pub(crate) fn frame(&mut self, index: usize) -> io::Result<&[u8]> {
+    /// Makes `index` the current frame.
+    pub(crate) fn load(&mut self, index: usize) -> io::Result<()> {
         let first = index - index % self.frames_per_batch;
         if self.first != Some(first) {
             self.first = None;
             self.gather(first)?;
             self.first = Some(first);
         }
-        let frame_bytes = self.values_per_frame() * self.element_bytes;
-        let begin = (index - first) * frame_bytes;
-        Ok(&self.batch[begin..begin + frame_bytes])
+        self.begin = (index - first) * self.frame_bytes();
+        Ok(())
     }
 
-    fn values_per_frame(&self) -> usize {
-        self.frame_dims.iter().product()
+    /// The bytes of the current frame in C order; empty before the first one.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        self.batch.get(self.begin..self.begin + self.frame_bytes()).unwrap_or_default()
     }
 
+    fn frame_bytes(&self) -> usize {
+        self.frame_dims.iter().product::<usize>() * self.element_bytes
+    }
+
+    /// Reads the whole array once. It lies there as one column for each pixel: its values in all frames.
     fn gather(&mut self, first: usize) -> io::Result<()> {
         let frames = self.frames_per_batch.min(self.frame_count - first);
-        let (size, values) = (self.element_bytes, self.values_per_frame());
+        let (size, frame_bytes) = (self.element_bytes, self.frame_bytes());
         self.batch.clear();
         self.batch
-            .try_reserve_exact(frames * values * size)
+            .try_reserve_exact(frames * frame_bytes)
             .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))?;
-        self.batch.resize(frames * values * size, 0);
+        self.batch.resize(frames * frame_bytes, 0);
 
-        let column_bytes = self.frame_count * size;
-        let columns_per_block = (BLOCK_BYTES / column_bytes).clamp(1, values);
-        let mut positions = FortranPositions::new(&self.frame_dims);
+        let (columns, column_bytes) = (frame_bytes / size, self.frame_count * size);
+        let columns_per_block = (BLOCK_BYTES / column_bytes).clamp(1, columns);
         self.stream.seek_to(self.start)?;
-        for block_first in (0..values).step_by(columns_per_block) {
-            let columns = columns_per_block.min(values - block_first);
-            read_into(&mut self.stream, columns * column_bytes, &mut self.block)?;
-            for column in self.block.chunks_exact(column_bytes) {
-                let wanted = &column[first * size..(first + frames) * size];
-                scatter(wanted, size, values * size, &mut self.batch[positions.next_position() * size..]);
+        for block_first in (0..columns).step_by(columns_per_block) {
+            let count = columns_per_block.min(columns - block_first);
+            read_into(&mut self.stream, count * column_bytes, &mut self.block)?;
+            for (column, values) in (block_first..).zip(self.block.chunks_exact(column_bytes)) {
+                let wanted = &values[first * size..(first + frames) * size];
+                let out = &mut self.batch[c_position(column, &self.frame_dims) * size..];
+                match size {
+                    1 => scatter::<1>(wanted, frame_bytes, out),
+                    2 => scatter::<2>(wanted, frame_bytes, out),
+                    4 => scatter::<4>(wanted, frame_bytes, out),
+                    _ => scatter::<8>(wanted, frame_bytes, out),
+                }
             }
         }
         Ok(())
@@ -93,58 +107,19 @@ impl GatheredFrames {
 }
 
 /// Copies value k of `column` to byte `k * stride` of `out`.
-fn scatter(column: &[u8], size: usize, stride: usize, out: &mut [u8]) {
-    match size {
-        1 => scatter_sized::<1>(column, stride, out),
-        2 => scatter_sized::<2>(column, stride, out),
-        4 => scatter_sized::<4>(column, stride, out),
-        _ => scatter_sized::<8>(column, stride, out),
-    }
-}
-
-fn scatter_sized<const SIZE: usize>(column: &[u8], stride: usize, out: &mut [u8]) {
+fn scatter<const SIZE: usize>(column: &[u8], stride: usize, out: &mut [u8]) {
     for (k, value) in column.as_chunks::<SIZE>().0.iter().enumerate() {
         out[k * stride..k * stride + SIZE].copy_from_slice(value);
     }
 }
 
-/// Walks through a frame in Fortran order, first index fastest, and tells each value's position in C order.
-struct FortranPositions {
-    /// (length, distance in C order) of each dimension.
-    dims: Vec<(usize, usize)>,
-    index: Vec<usize>,
-    position: usize,
-}
-
-impl FortranPositions {
-    fn new(dims: &[usize]) -> Self {
-        let mut distance = 1;
-        let mut dims: Vec<_> = dims
-            .iter()
-            .rev()
-            .map(|&dim| {
-                let row = (dim, distance);
-                distance *= dim;
-                row
-            })
-            .collect();
-        dims.reverse();
-        Self { index: vec![0; dims.len()], dims, position: 0 }
-    }
-
-    fn next_position(&mut self) -> usize {
-        let position = self.position;
-        for (index, &(dim, distance)) in self.index.iter_mut().zip(&self.dims) {
-            *index += 1;
-            self.position += distance;
-            if *index < dim {
-                break;
-            }
-            *index = 0;
-            self.position -= dim * distance;
-        }
-        position
-    }
+/// The place in C order, last index fastest, of what is at place `rest` in Fortran order, first index fastest.
+fn c_position(mut rest: usize, dims: &[usize]) -> usize {
+    dims.iter().fold(0, |position, &dim| {
+        let index = rest % dim;
+        rest /= dim;
+        position * dim + index
+    })
 }
 
 #[cfg(test)]
@@ -155,10 +130,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_walk_in_fortran_order_meets_every_position_once() {
-        let mut positions = FortranPositions::new(&[2, 3]);
-        let walk: Vec<_> = (0..6).map(|_| positions.next_position()).collect();
-        assert_eq!(walk, [0, 3, 1, 4, 2, 5]);
+    fn places_in_fortran_order_have_their_places_in_c_order() {
+        let places: Vec<_> = (0..6).map(|place| c_position(place, &[2, 3])).collect();
+        assert_eq!(places, [0, 3, 1, 4, 2, 5]);
+        assert_eq!(c_position(0, &[]), 0);
     }
 
     #[test]
@@ -180,8 +155,9 @@ mod tests {
             let mut gathered = GatheredFrames::new(stream, 0, &[7, 3, 2], 2, batch_bytes);
             for n in [0, 6, 5, 1, 2, 3, 4, 0] {
                 let expected: Vec<_> = [0, 1, 10, 11, 20, 21].map(|at| 100 * n as u16 + at).to_vec();
+                gathered.load(n).unwrap();
                 let found: Vec<_> =
-                    gathered.frame(n).unwrap().as_chunks().0.iter().map(|&v| u16::from_le_bytes(v)).collect();
+                    gathered.bytes().as_chunks().0.iter().map(|&v| u16::from_le_bytes(v)).collect();
                 assert_eq!(found, expected, "batches of {batch_bytes} bytes");
             }
         }

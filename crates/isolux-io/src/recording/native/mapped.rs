@@ -20,26 +20,35 @@ pub(crate) struct MappedFrames {
     frame_bytes: usize,
     frame_count: usize,
     window: Option<(usize, Mmap)>,
+    /// Byte of the current frame in the window.
+    begin: usize,
 }
 
 impl MappedFrames {
     pub(crate) fn new(file: File, start: u64, frame_bytes: usize, frame_count: usize) -> Self {
-        Self { file, start, frame_bytes, frame_count, window: None }
+        Self { file, start, frame_bytes, frame_count, window: None, begin: 0 }
     }
 
-    /// The bytes of frame `index`, which must be below the frame count.
-    pub(crate) fn frame(&mut self, index: usize, path: &Path) -> Result<&[u8], RecordingError> {
+    /// Makes `index`, which must be below the frame count, the current frame.
+    pub(crate) fn load(&mut self, index: usize, path: &Path) -> Result<(), RecordingError> {
         let frames_per_window = (WINDOW_BYTES / self.frame_bytes).max(1);
         let first = index - index % frames_per_window;
-        let current = self.window.take_if(|window| window.0 != first);
-        drop(current);
-        let window = match self.window.take() {
-            Some((_, window)) => window,
-            None => self.map(first, frames_per_window.min(self.frame_count - first), path)?,
-        };
-        let (_, window) = self.window.insert((first, window));
-        let begin = (index - first) * self.frame_bytes;
-        Ok(&window[begin..begin + self.frame_bytes])
+        if self.window.as_ref().is_none_or(|window| window.0 != first) {
+            // Unmapped before the next one is mapped: two windows at once would count twice.
+            self.window = None;
+            let frames = frames_per_window.min(self.frame_count - first);
+            self.window = Some((first, self.map(first, frames, path)?));
+        }
+        self.begin = (index - first) * self.frame_bytes;
+        Ok(())
+    }
+
+    /// The bytes of the current frame; empty before the first one.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        match &self.window {
+            Some((_, window)) => &window[self.begin..self.begin + self.frame_bytes],
+            None => &[],
+        }
     }
 
     fn map(&self, first: usize, frames: usize, path: &Path) -> Result<Mmap, RecordingError> {
@@ -75,7 +84,8 @@ mod tests {
             (0..5u8).for_each(|frame| file.write_all(&vec![frame; frame_bytes]).unwrap());
             let mut frames = MappedFrames::new(file, start, frame_bytes, 5);
             for index in [0, 1, 2, 3, 4, 2, 0, 4] {
-                let frame = frames.frame(index, Path::new("test")).unwrap();
+                frames.load(index, Path::new("test")).unwrap();
+                let frame = frames.bytes();
                 assert!(frame.len() == frame_bytes && frame.iter().all(|&byte| usize::from(byte) == index));
             }
         }

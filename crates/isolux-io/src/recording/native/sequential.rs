@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use super::stream::SectionStream;
 
 /// Frames behind a decoder. Ascending reads decode each byte once; going back starts anew.
+#[derive(Debug)]
 pub(crate) struct SequentialFrames {
     stream: SectionStream,
     /// Byte of the first frame.
@@ -19,15 +20,20 @@ impl SequentialFrames {
         Self { stream, start, frame_bytes, buffer: Vec::new(), current: None }
     }
 
-    /// The bytes of frame `index`.
-    pub(crate) fn frame(&mut self, index: usize) -> io::Result<&[u8]> {
+    /// Makes `index` the current frame.
+    pub(crate) fn load(&mut self, index: usize) -> io::Result<()> {
         if self.current != Some(index) {
             self.current = None;
             self.stream.seek_to(self.start + index as u64 * self.frame_bytes as u64)?;
             read_into(&mut self.stream, self.frame_bytes, &mut self.buffer)?;
             self.current = Some(index);
         }
-        Ok(&self.buffer)
+        Ok(())
+    }
+
+    /// The bytes of the current frame.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.buffer
     }
 }
 

@@ -30,12 +30,14 @@ pub(crate) enum Packing {
 
 type Bytes = BufReader<Take<File>>;
 
+#[derive(Debug)]
 enum Source {
     Plain(Bytes),
     Deflate(DeflateDecoder<Bytes>, Crc),
 }
 
 /// Reads a section in order; going back starts anew.
+#[derive(Debug)]
 pub(crate) struct SectionStream {
     file: File,
     section: Section,

@@ -3,8 +3,8 @@
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 
+use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -16,18 +16,8 @@ pub(super) struct Output {
     path: PathBuf,
     archive: bool,
     overwrite: bool,
-    staging: Staging,
-}
-
-/// A folder that is removed when it is dropped.
-#[derive(Debug)]
-struct Staging(PathBuf);
-
-impl Drop for Staging {
-    fn drop(&mut self) {
-        // Nothing can be done about a failure, and after a rename there is nothing to remove.
-        let _ = fs::remove_dir_all(&self.0);
-    }
+    /// Removed when it is dropped, unless it has been renamed to be the output.
+    staging: TempDir,
 }
 
 impl Output {
@@ -41,7 +31,7 @@ impl Output {
         }
         let archive = path.extension().is_some_and(|extension| extension == "npz");
         check_target(path, archive, overwrite)?;
-        let staging = Staging::create(path)?;
+        let staging = folder_beside(path).map_err(RecordingError::io("create", path))?;
         Ok(Self { path: path.to_owned(), archive, overwrite, staging })
     }
 
@@ -51,12 +41,12 @@ impl Output {
 
     /// The folder for the channels' files.
     pub(super) fn staging(&self) -> &Path {
-        &self.staging.0
+        self.staging.path()
     }
 
     /// Completes the recording from the staged channels and gives it its name.
     pub(super) fn publish(self, channels: &[String], json: &str) -> Result<(), RecordingError> {
-        let folder = &self.staging.0;
+        let folder = self.staging.path();
         let json_path = folder.join("recording.json");
         fs::write(&json_path, json).map_err(RecordingError::io("write", &json_path))?;
         if !self.archive {
@@ -79,27 +69,16 @@ impl Output {
     }
 }
 
-impl Staging {
-    fn create(path: &Path) -> Result<Self, RecordingError> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        loop {
-            let count = COUNT.fetch_add(1, Ordering::Relaxed);
-            let folder = beside(path, &format!("{}-{count}", std::process::id()));
-            match fs::create_dir(&folder) {
-                Ok(()) => return Ok(Self(folder)),
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(RecordingError::io("create", path)(error)),
-            }
-        }
-    }
-}
-
-/// A hidden name in the same folder, so that a rename stays within one file system.
-fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".partial-{suffix}"));
-    path.with_file_name(name)
+/// A folder with a hidden name in the same folder, so that a rename stays within one file system; with the
+/// permissions that the user's umask grants.
+fn folder_beside(path: &Path) -> io::Result<TempDir> {
+    let mut prefix = std::ffi::OsString::from(".");
+    prefix.push(path.file_name().unwrap_or_default());
+    prefix.push(".partial-");
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Asked first: that the folder is not there should not be told of a hidden name in it.
+    fs::metadata(folder)?;
+    tempfile::Builder::new().prefix(&prefix).tempdir_in(folder)
 }
 
 /// Refuses an output that is there, unless it is a recording that may be overwritten.
@@ -150,13 +129,14 @@ fn replace(folder: &Path, path: &Path) -> Result<(), RecordingError> {
     if !path.exists() {
         return fs::rename(folder, path).map_err(create());
     }
-    let aside = beside(path, &format!("{}-replaced", std::process::id()));
-    fs::rename(path, &aside).map_err(RecordingError::io("replace", path))?;
+    let aside = folder_beside(path).map_err(RecordingError::io("replace", path))?;
+    let old = aside.path().join("replaced");
+    fs::rename(path, &old).map_err(RecordingError::io("replace", path))?;
     if let Err(error) = fs::rename(folder, path) {
-        let _ = fs::rename(&aside, path);
+        let _ = fs::rename(&old, path);
         return Err(create()(error));
     }
-    fs::remove_dir_all(&aside).map_err(RecordingError::io("remove", &aside))
+    fs::remove_dir_all(&old).map_err(RecordingError::io("remove", &old))
 }
 
 /// Packs the channels' files into a ZIP archive, stored, and removes each as soon as it is packed. The time

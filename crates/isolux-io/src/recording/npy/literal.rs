@@ -1,7 +1,6 @@
 //! The little of Python's syntax that the headers of `.npy` files use.
 
-use super::npy::{HeaderError, unlike};
-use crate::recording::element::{ByteOrder, ElementType};
+use super::header_error::{HeaderError, unlike};
 
 /// A cursor over a Python literal; knows no more of the language than headers use, and does not recurse.
 pub(super) struct Literal<'a> {
@@ -52,28 +51,9 @@ impl<'a> Literal<'a> {
         Err(self.unexpected("True or False"))
     }
 
-    pub(super) fn element(&mut self) -> Result<(ElementType, ByteOrder), HeaderError> {
-        if self.rest.trim_start().starts_with(['[', '(']) {
-            return Err(unlike(
-                "a structured array",
-                "an array of plain numbers, one .npy file for each field",
-            ));
-        }
-        let descr = self.string()?;
-        ElementType::from_npy_descr(descr).ok_or_else(|| {
-            let kind = match descr.as_bytes().get(1) {
-                Some(b'O') => "an array of Python objects",
-                Some(b'c') => "an array of complex numbers",
-                Some(b'S' | b'U' | b'a') => "an array of strings",
-                Some(b'm' | b'M') => "an array of dates or durations",
-                _ => "an array of another type",
-            };
-            let found = format!("{kind} (dtype '{}')", shorten(descr));
-            unlike(
-                found,
-                "bool, (u)int8 to (u)int64, float16, float32 or float64; convert it with .astype(...)",
-            )
-        })
+    /// True where the next thing is a list or a tuple.
+    pub(super) fn at_sequence(&self) -> bool {
+        self.rest.trim_start().starts_with(['[', '('])
     }
 
     pub(super) fn tuple(&mut self) -> Result<Vec<usize>, HeaderError> {

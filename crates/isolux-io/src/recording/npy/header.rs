@@ -1,8 +1,10 @@
 //! The header of a `.npy` file: magic, version, and a Python dictionary of element type, order and shape.
 //! Format: NumPy enhancement proposal 1, and `numpy/lib/format.py`.
 
-use std::io::{self, Read};
+use std::io::Read;
 
+use super::descr;
+use super::header_error::{HeaderError, unlike};
 use super::literal::{Literal, shorten};
 use crate::recording::element::{ByteOrder, ElementType};
 
@@ -21,18 +23,6 @@ pub(crate) struct NpyHeader {
     pub(crate) dims: Vec<usize>,
     /// Bytes before the first value.
     pub(crate) data_offset: u64,
-}
-
-/// Why a header could not be understood.
-#[derive(Debug)]
-pub(crate) enum HeaderError {
-    Io(io::Error),
-    Content { found: String, expected: String },
-}
-
-/// An error in the contents.
-pub(super) fn unlike(found: impl Into<String>, expected: &str) -> HeaderError {
-    HeaderError::Content { found: found.into(), expected: expected.to_owned() }
 }
 
 impl NpyHeader {
@@ -84,7 +74,7 @@ impl NpyHeader {
             let key = literal.string()?;
             literal.expect(':')?;
             match key {
-                "descr" => element = Some(literal.element()?),
+                "descr" => element = Some(element_type(&mut literal)?),
                 "fortran_order" => fortran_order = Some(literal.boolean()?),
                 "shape" => dims = Some(literal.tuple()?),
                 other => return Err(unlike(format!("header key '{}'", shorten(other)), EXPECTED_KEYS)),
@@ -117,18 +107,26 @@ impl NpyHeader {
     }
 }
 
+fn element_type(literal: &mut Literal<'_>) -> Result<(ElementType, ByteOrder), HeaderError> {
+    if literal.at_sequence() {
+        return Err(unlike("a structured array", "an array of plain numbers, one .npy file for each field"));
+    }
+    descr::parse(literal.string()?)
+}
+
 /// The bytes of a version 1.0 header for a little-endian array in C order, padded as NumPy pads it so that the
-/// data start at a multiple of 64 bytes.
-pub(crate) fn header_bytes(element: ElementType, dims: &[usize]) -> Vec<u8> {
+/// data start at a multiple of 64 bytes; at least `least_bytes`, for a header that takes the place of a longer one.
+pub(crate) fn header_bytes(element: ElementType, dims: &[usize], least_bytes: usize) -> Vec<u8> {
     let mut shape: String = dims.iter().map(|dim| format!("{dim}, ")).collect();
     if dims.len() > 1 {
         shape.truncate(shape.len() - 2);
     }
-    let descr = element.npy_descr();
+    let descr = descr::little_endian(element);
     let mut text =
         format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}", shape.trim_end());
     let unpadded = MAGIC.len() + 4 + text.len() + 1;
-    text.extend(std::iter::repeat_n(' ', unpadded.next_multiple_of(64) - unpadded));
+    let padded = unpadded.max(least_bytes).next_multiple_of(64);
+    text.extend(std::iter::repeat_n(' ', padded - unpadded));
     text.push('\n');
     let mut bytes = MAGIC.to_vec();
     bytes.extend([1, 0]);
@@ -167,12 +165,13 @@ mod tests {
     #[test]
     fn what_is_written_reads_back() {
         for dims in [vec![], vec![7], vec![7, 2], vec![1, 4, 3, 2]] {
-            let bytes = header_bytes(ElementType::U16, &dims);
+            let bytes = header_bytes(ElementType::U16, &dims, 0);
             let header = NpyHeader::read(&mut bytes.as_slice()).unwrap();
             assert_eq!(header.dims, dims);
             assert_eq!((header.element, header.byte_order), (ElementType::U16, ByteOrder::Little));
             assert_eq!(header.data_offset, bytes.len() as u64);
             assert_eq!(bytes.len() % 64, 0);
+            assert_eq!(header_bytes(ElementType::U16, &dims, 129).len(), 192);
         }
     }
 
