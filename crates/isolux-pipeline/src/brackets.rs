@@ -1,6 +1,6 @@
 //! Which frames of a recording make one bracket, and merging them.
 
-use isolux::standardize::{BracketMerge, FrameSummary};
+use isolux::standardize::BracketMerge;
 use isolux::{Channels, IntegrationTime, PixelFlags, Shape, Standardized, Standardizer};
 
 use crate::error::{FrameError, PipelineError};
@@ -92,7 +92,7 @@ pub(crate) struct Merging {
     left: usize,
     /// Pixels that every frame so far refuses for its time, at most.
     refused: usize,
-    pub(crate) out: Standardized,
+    out: Standardized,
 }
 
 impl Merging {
@@ -108,27 +108,26 @@ impl Merging {
         Ok((frames, Self { merge, lengths, left, refused: usize::MAX, out }))
     }
 
-    /// Takes the next frame; the merged one is in `out` when this was the last of its bracket.
-    pub(crate) fn push(
-        &mut self,
-        frame: &Standardized,
-        summary: &FrameSummary,
-    ) -> Result<Option<FrameSummary>, FrameError> {
-        self.refused = self.refused.min(summary.time_refused);
+    /// Bytes that it holds, known after the first frame.
+    pub(crate) fn bytes(&self) -> usize {
+        self.merge.bytes() + self.out.bytes()
+    }
+
+    /// Takes the next frame; the merged one, when this was the last of its bracket.
+    pub(crate) fn push(&mut self, frame: &Standardized) -> Result<Option<&Standardized>, FrameError> {
+        self.refused = self.refused.min(frame.summary.time_refused);
         self.merge.push(frame)?;
         self.left = self.left.saturating_sub(1);
         if self.left > 0 {
             return Ok(None);
         }
         self.left = self.lengths.next().unwrap_or(0);
-        let merged = self.merge.finish(&mut self.out);
+        self.merge.finish(&mut self.out);
         let extrapolated = |flags: &&PixelFlags| {
             flags.contains(PixelFlags::TIME_OUT_OF_RANGE) && !flags.contains(PixelFlags::INVALID)
         };
-        Ok(Some(FrameSummary {
-            time_refused: std::mem::replace(&mut self.refused, usize::MAX),
-            time_extrapolated: self.out.flags.values().iter().filter(extrapolated).count(),
-            ..merged
-        }))
+        self.out.summary.time_refused = std::mem::replace(&mut self.refused, usize::MAX);
+        self.out.summary.time_extrapolated = self.out.flags.values().iter().filter(extrapolated).count();
+        Ok(Some(&self.out))
     }
 }

@@ -1,6 +1,7 @@
 //! Going through frames in their order.
 
-use isolux::{Channels, Frame};
+use isolux::standardize::Prepared;
+use isolux::{Channels, Frame, Stream};
 
 use crate::error::PipelineError;
 use crate::observer::{Observer, Progress, Work};
@@ -32,8 +33,29 @@ pub fn for_each(
     Ok(())
 }
 
+/// Reads frame `index` out of its turn. `stream` is made to remember those before it that its result depends on, and the
+/// frame can be pushed next.
+pub(crate) fn read_alone(
+    source: &mut dyn FrameSource,
+    index: usize,
+    wanted: Channels,
+    stream: &mut Stream,
+    frame: &mut Frame,
+) -> Result<(), PipelineError> {
+    let name = source.facts().name;
+    let wanted = wanted | stream.standardizer().needed();
+    stream.reset();
+    let mut prepared = Prepared::default();
+    for earlier in index.saturating_sub(stream.standardizer().frames_before())..index {
+        read_present(source, earlier, wanted, frame)?;
+        let taken = stream.prepare(frame, &mut prepared);
+        taken.map_err(|error| PipelineError::frame(&name, earlier)(error.into()))?;
+    }
+    read_present(source, index, wanted, frame)
+}
+
 /// Reads a frame that the source is known to have.
-pub(crate) fn read_present(
+fn read_present(
     source: &mut dyn FrameSource,
     index: usize,
     wanted: Channels,

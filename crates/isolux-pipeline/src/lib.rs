@@ -19,7 +19,7 @@
 //! use isolux::Choice;
 //! use isolux_camera::{CameraModel, Scene, Simulation};
 //! use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, standardize};
-//! use isolux_pipeline::{Observer, Remark, Work, plan};
+//! use isolux_pipeline::{FrameSource, Observer, Remark, Work, plan};
 //!
 //! /// Says on a terminal what goes on.
 //! struct Terminal;
@@ -40,18 +40,18 @@
 //! # let extras = isolux_pipeline::simulate::Extras::default();
 //! # isolux_pipeline::simulate::record(&simulation, extras, &folder.path().join("wall"), false, &Terminal)?;
 //! let mut recording = isolux_io::open(&folder.path().join("wall"))?;
-//! let chain = plan(&Choice::default(), None, &mut recording, &Terminal)?;
+//! let traits = recording.facts().traits();
+//! let chain = plan(&Choice::default(), None, traits, &mut recording, &Terminal)?;
 //! let mut sink = NativeSink::new(&folder.path().join("standardized"), false);
 //! let options = StandardizeOptions::default();
 //! let summary = standardize(&mut recording, &chain, &options, &mut sink, &Terminal)?;
-//! assert_eq!(summary.frames, recording.metadata().frame_count);
+//! assert_eq!(Some(summary.frames), recording.metadata().frame_count);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod assess;
 pub mod brackets;
 pub mod calibrate;
-mod chain;
 pub mod diagnose;
 pub mod error;
 pub mod frames;

@@ -3,7 +3,7 @@
 use isolux::calibrate::NoiseSurvey;
 use isolux::standardize::SigmaStep;
 use isolux::terms::NoiseModel;
-use isolux::{Calibration, Channels, Choice, Standardizer};
+use isolux::{Calibration, Channels, Choice, RecordingTraits, Standardizer};
 
 use crate::error::PipelineError;
 use crate::frames;
@@ -11,7 +11,8 @@ use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
-/// Plans the chain for a recording. Where the standard deviation is required and nothing tells the noise, the recording
+/// Plans the chain for a recording with these traits: [`SourceFacts::traits`](crate::SourceFacts::traits), or what the
+/// user knows better. Where the standard deviation is required and nothing tells the noise, the recording
 /// is read once to estimate it. The observer is told the notes of the plan.
 ///
 /// # Errors
@@ -19,17 +20,16 @@ use crate::source::FrameSource;
 pub fn plan(
     choice: &Choice,
     calibration: Option<&Calibration>,
+    traits: RecordingTraits,
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<Standardizer, PipelineError> {
-    let facts = source.facts();
     let mut choice = *choice;
-    choice.modulation_frequency_hz = choice.modulation_frequency_hz.or(facts.info.modulation_frequency_hz);
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
-    if choice.sigma == SigmaStep::Required && !known && facts.available.contains(Channels::AMPLITUDE) {
+    if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {
         choice.noise = Some(estimate_noise(source, observer)?);
     }
-    let standardizer = Standardizer::plan_for(&choice, calibration, facts.stream())?;
+    let standardizer = Standardizer::plan(&choice, calibration, traits)?;
     standardizer.notes().iter().for_each(|note| observer.remark(Remark::Plan(note.clone())));
     Ok(standardizer)
 }

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use isolux::standardize::Stream;
-use isolux::{Channels, Frame, Intrinsics, Shape};
+use isolux::{Channels, Frame, Intrinsics, RecordingTraits, Shape};
 use isolux_io::recording::{ChannelInfo, Storage};
 use isolux_io::{Recording, RecordingInfo};
 
@@ -48,8 +47,13 @@ impl SourceFacts {
 
     /// What a plan must know of the frames.
     #[must_use]
-    pub fn stream(&self) -> Stream {
-        Stream { channels: self.available, shape: Some(self.shape), intrinsics: self.intrinsics() }
+    pub fn traits(&self) -> RecordingTraits {
+        RecordingTraits {
+            channels: self.available,
+            shape: Some(self.shape),
+            intrinsics: self.intrinsics(),
+            modulation_frequency_hz: self.info.modulation_frequency_hz,
+        }
     }
 }
 
@@ -59,7 +63,7 @@ pub trait FrameSource {
     fn facts(&self) -> SourceFacts;
 
     /// Reads frame `index`, counted from 0, into `frame`, whose memory is reused; `false` when the frames end before it.
-    /// Ascending reads are fast; any order is correct, be it that a stream is read from its start again.
+    /// Ascending reads are fast; whether others are possible is the source's to say.
     ///
     /// The `wanted` channels are filled, as far as they are there; others may be.
     ///
@@ -94,18 +98,14 @@ impl FrameSource for dyn Recording + '_ {
             name: metadata.path.display().to_string(),
             shape: metadata.shape,
             available: metadata.available,
-            frame_count: Some(metadata.frame_count),
+            frame_count: metadata.frame_count,
             amplitude_from_phase_samples: metadata.channels.iter().any(computed),
             info: metadata.info.clone(),
         }
     }
 
     fn read(&mut self, index: usize, wanted: Channels, frame: &mut Frame) -> Result<bool, PipelineError> {
-        if index >= self.metadata().frame_count {
-            return Ok(false);
-        }
-        self.read_frame(index, wanted, frame)?;
-        Ok(true)
+        Ok(self.read_frame_if_there(index, wanted, frame)?)
     }
 
     fn stored_channels(&self) -> Vec<ChannelInfo> {

@@ -5,7 +5,7 @@ use std::path::Path;
 use isolux::{Calibration, Standardizer};
 use isolux_io::Recording;
 use isolux_pipeline::assess::Pixels;
-use isolux_pipeline::{AssessOptions, Assessment, assess, plan};
+use isolux_pipeline::{AssessOptions, Assessment, FrameSource, assess, plan};
 use serde_json::json;
 
 use crate::evaluation::{figures_table, page, pictures, rivals_table};
@@ -22,7 +22,8 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     let calibration = args.calibration.as_deref().map(isolux_io::read_calibration).transpose()?;
     let mut recording = isolux_io::open(&args.recording)?;
     let observer = Terminal::default();
-    let standardizer = plan(&args.steps.choice()?, calibration.as_ref(), &mut recording, &observer)?;
+    let (choice, traits) = (args.steps.choice()?, args.steps.traits(recording.facts().traits()));
+    let standardizer = plan(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
     let options = AssessOptions {
         calibration: calibration.as_ref(),
         pixels: if args.trusted { Pixels::Trusted } else { Pixels::Valid },

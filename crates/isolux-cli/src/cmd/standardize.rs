@@ -1,7 +1,7 @@
 //! `isolux standardize`: a recording in, a standardized recording out.
 
 use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, step_json, steps};
-use isolux_pipeline::{Brackets, Summary, plan};
+use isolux_pipeline::{Brackets, FrameSource, Summary, plan};
 use serde_json::{Value, json};
 
 use crate::failure::Outcome;
@@ -15,7 +15,8 @@ pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     let calibration = args.calibration.as_deref().map(isolux_io::read_calibration).transpose()?;
     let mut recording = isolux_io::open(&args.recording)?;
     let observer = Terminal::default();
-    let standardizer = plan(&args.steps.choice()?, calibration.as_ref(), &mut recording, &observer)?;
+    let (choice, traits) = (args.steps.choice()?, args.steps.traits(recording.facts().traits()));
+    let standardizer = plan(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
     let brackets = args.merge_bracket.map(|length| Brackets::plan(&mut recording, length, &observer));
     let brackets = brackets.transpose()?;
     let options = StandardizeOptions {

@@ -43,7 +43,6 @@ impl SigmaArgs {
             None => SigmaStep::WhereKnown,
             Some(SigmaArg::Off) => SigmaStep::None,
         };
-        choice.modulation_frequency_hz = self.modulation_frequency_hz;
         let given = [self.read_noise_dn, self.shot_noise_dn2_per_dn];
         if given.iter().any(Option::is_some) {
             if self.sigma == Some(SigmaArg::Off) {

@@ -15,9 +15,3 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
         Err("a number of 0 or more expected".to_owned())
     }
 }
-
-/// A number above 0 and up to 1.
-pub(crate) fn fraction(text: &str) -> Result<f64, String> {
-    let value = positive(text)?;
-    if value <= 1.0 { Ok(value) } else { Err("a fraction above 0 and up to 1 expected".to_owned()) }
-}

@@ -4,19 +4,16 @@ use std::collections::BTreeMap;
 
 use isolux::evaluate::{EvaluationFrame, EvaluationSettings, Evaluator};
 use isolux::standardize::StandardizeError;
-use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape, Standardized, Standardizer};
+use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape, Standardized, Standardizer, Stream};
 
 use super::rivals::{Pass, Rivals};
 use super::{MeanAtTime, Pixels};
-use crate::chain::{Chain, Smoothed};
 
 /// The two evaluators, what makes the second's frames, and the chains beside it.
-pub(super) struct Evaluation<'a> {
-    pub(super) chain: Chain<'a>,
-    smoothed: Smoothed,
+pub(super) struct Evaluation {
+    pub(super) stream: Stream,
     pixels: Pixels,
     pub(super) rivals: Rivals,
-    out: Standardized,
     trusted: Plane<PixelFlags>,
     pub(super) before: Evaluator,
     pub(super) after: Evaluator,
@@ -24,16 +21,13 @@ pub(super) struct Evaluation<'a> {
     means: BTreeMap<u64, TimeSums>,
 }
 
-impl<'a> Evaluation<'a> {
-    pub(super) fn new(shape: Shape, standardizer: &'a Standardizer, pixels: Pixels, rivals: Rivals) -> Self {
+impl Evaluation {
+    pub(super) fn new(shape: Shape, standardizer: &Standardizer, pixels: Pixels, rivals: Rivals) -> Self {
         let evaluator = || Evaluator::new(shape, EvaluationSettings::default());
-        let chain = Chain::new(standardizer);
         Self {
-            smoothed: chain.smoothed(),
-            chain,
+            stream: standardizer.stream(),
             pixels,
             rivals,
-            out: Standardized::new(shape),
             trusted: Plane::filled(shape, PixelFlags::empty()),
             before: evaluator(),
             after: evaluator(),
@@ -43,17 +37,14 @@ impl<'a> Evaluation<'a> {
 
     /// Standardizes a frame and hands both to `pass`.
     pub(super) fn take(&mut self, frame: &Frame, pass: Pass) -> Result<(), StandardizeError> {
-        self.chain.standardize(frame, &mut self.smoothed, &mut self.out)?;
+        let out = self.stream.push(frame)?;
         if self.pixels == Pixels::Trusted {
-            mark_distrusted(&self.out.flags, &mut self.trusted);
+            mark_distrusted(&out.flags, &mut self.trusted);
         }
-        let (before_flags, after_flags) = match self.pixels {
-            Pixels::Valid => (&frame.flags, &self.out.flags),
-            Pixels::Trusted => (&self.trusted, &self.trusted),
-        };
+        let (before_flags, after_flags) = counted(self.pixels, &self.trusted, frame, out);
         let raw = EvaluationFrame::of_standardized(frame, &frame.amplitude, before_flags);
-        let standardized = EvaluationFrame::of_standardized(frame, &self.out.amplitude, after_flags)
-            .with_sigma(self.out.sigma.as_ref());
+        let standardized = EvaluationFrame::of_standardized(frame, &out.amplitude, after_flags)
+            .with_sigma(out.sigma.as_ref());
         let (before, after) =
             rayon::join(|| pass(&mut self.before, &raw), || pass(&mut self.after, &standardized));
         before?;
@@ -66,12 +57,10 @@ impl<'a> Evaluation<'a> {
     pub(super) fn push(&mut self, frame: &Frame) -> Result<(), StandardizeError> {
         self.take(frame, |evaluator, frame| evaluator.push(frame))?;
         if let IntegrationTime::PerFrame(time_us) = frame.integration_time_us {
-            let (before_flags, after_flags) = match self.pixels {
-                Pixels::Valid => (&frame.flags, &self.out.flags),
-                Pixels::Trusted => (&self.trusted, &self.trusted),
-            };
+            let out = self.stream.last();
+            let (before_flags, after_flags) = counted(self.pixels, &self.trusted, frame, out);
             let before = ValueSum::of(&frame.amplitude, before_flags);
-            let after = ValueSum::of(&self.out.amplitude, after_flags);
+            let after = ValueSum::of(&out.amplitude, after_flags);
             let sums = self.means.entry(time_us.to_bits()).or_default();
             sums.time_us = time_us;
             sums.before.add(before);
@@ -83,6 +72,19 @@ impl<'a> Evaluation<'a> {
     /// Means at each integration time, increasing.
     pub(super) fn means(&self) -> Vec<MeanAtTime> {
         self.means.values().map(TimeSums::mean).collect()
+    }
+}
+
+/// The flags that decide which pixels count, raw and standardized.
+fn counted<'a>(
+    pixels: Pixels,
+    trusted: &'a Plane<PixelFlags>,
+    frame: &'a Frame,
+    out: &'a Standardized,
+) -> (&'a Plane<PixelFlags>, &'a Plane<PixelFlags>) {
+    match pixels {
+        Pixels::Valid => (&frame.flags, &out.flags),
+        Pixels::Trusted => (trusted, trusted),
     }
 }
 

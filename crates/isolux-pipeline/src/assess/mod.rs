@@ -80,7 +80,7 @@ pub fn assess(
 ) -> Result<Assessment, PipelineError> {
     let facts = source.facts();
     let rivals = match options.rivals {
-        true => Rivals::new(standardizer, options.calibration, facts.stream(), facts.shape),
+        true => Rivals::new(standardizer, options.calibration, facts.traits(), facts.shape),
         false => Rivals::none(),
     };
     let mut evaluation = Evaluation::new(facts.shape, standardizer, options.pixels, rivals);
@@ -95,10 +95,10 @@ pub fn assess(
     let reference = nearest_reference(times.iter().copied(), reference_us);
     if let Some(index) = reference {
         let mut frame = Frame::new(facts.shape);
-        evaluation.chain.read_alone(source, index, wanted, &mut frame)?;
+        frames::read_alone(source, index, wanted, &mut evaluation.stream, &mut frame)?;
         let taken = evaluation.take(&frame, |evaluator, frame| evaluator.set_reference(frame));
         taken.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))?;
-        evaluation.chain.restart();
+        evaluation.stream.reset();
     }
     let (mut motion, mut last_us) = (MotionWatch::default(), None);
     frames::for_each(source, wanted, Work::Evaluating, observer, |index, frame| {

@@ -1,8 +1,10 @@
 //! The chains that an evaluation shows beside the chosen one, on the same frames: the textbook's and the paper's.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator};
-use isolux::standardize::{StandardizeError, Stream};
-use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Plane, Shape, Standardized, Standardizer};
+use isolux::standardize::StandardizeError;
+use isolux::{
+    Calibration, Channels, Choice, Frame, PixelFlags, Plane, RecordingTraits, Shape, Standardizer, Stream,
+};
 
 /// What is done with a frame by an evaluator.
 pub(super) type Pass = fn(&mut Evaluator, &EvaluationFrame<'_>) -> Result<(), isolux::ShapeError>;
@@ -21,8 +23,7 @@ pub struct Standing {
 /// One rival at work.
 struct Rival {
     name: &'static str,
-    standardizer: Standardizer,
-    out: Standardized,
+    stream: Stream,
     flags: Plane<PixelFlags>,
     evaluator: Evaluator,
 }
@@ -40,24 +41,24 @@ impl Rivals {
     pub(super) fn new(
         chosen: &Standardizer,
         calibration: Option<&Calibration>,
-        stream: Stream,
+        traits: RecordingTraits,
         shape: Shape,
     ) -> Self {
         let rival = |(name, choice): (&'static str, Choice)| {
             // A chain that cannot be planned here is nobody's rival.
-            let standardizer = Standardizer::plan_for(&choice, calibration, stream).ok()?;
+            let standardizer = Standardizer::plan(&choice, calibration, traits).ok()?;
             let same = does_the_same(&standardizer, chosen) || standardizer.steps().is_empty();
             let evaluator = Evaluator::new(shape, EvaluationSettings::default());
             let flags = Plane::filled(shape, PixelFlags::empty());
-            (!same).then(|| Rival { name, standardizer, out: Standardized::new(shape), flags, evaluator })
+            (!same).then(|| Rival { name, stream: standardizer.stream(), flags, evaluator })
         };
-        let chains = [("textbook", Choice::textbook(stream.channels)), ("paper", Choice::paper())];
+        let chains = [("textbook", Choice::textbook(traits.channels)), ("paper", Choice::paper())];
         Self(chains.into_iter().filter_map(rival).collect())
     }
 
     /// The channels that they read.
     pub(super) fn needed(&self) -> Channels {
-        self.0.iter().fold(Channels::empty(), |all, rival| all | rival.standardizer.needed())
+        self.0.iter().fold(Channels::empty(), |all, rival| all | rival.stream.standardizer().needed())
     }
 
     /// Takes a frame. Pixels that are INVALID in `trusted`, where it is given, do not count.
@@ -68,14 +69,14 @@ impl Rivals {
         pass: Pass,
     ) -> Result<(), StandardizeError> {
         for rival in &mut self.0 {
-            rival.standardizer.apply(frame, &mut rival.out)?;
+            let out = rival.stream.push(frame)?;
             rival.flags.reshape(frame.shape(), PixelFlags::empty());
-            rival.flags.values_mut().copy_from_slice(rival.out.flags.values());
+            rival.flags.values_mut().copy_from_slice(out.flags.values());
             let trusted = trusted.into_iter().flat_map(Plane::values);
             for (flags, trusted) in rival.flags.values_mut().iter_mut().zip(trusted) {
                 *flags |= *trusted & PixelFlags::INVALID;
             }
-            let values = EvaluationFrame::of_standardized(frame, &rival.out.amplitude, &rival.flags);
+            let values = EvaluationFrame::of_standardized(frame, &out.amplitude, &rival.flags);
             pass(&mut rival.evaluator, &values)?;
         }
         Ok(())
@@ -85,7 +86,7 @@ impl Rivals {
     pub(super) fn standings(&self, raw: &Evaluator) -> Vec<Standing> {
         let standing = |rival: &Rival| Standing {
             name: rival.name,
-            steps: rival.standardizer.steps().iter().map(|step| step.term).collect(),
+            steps: rival.stream.standardizer().steps().iter().map(|step| step.term).collect(),
             comparison: Comparison::new(raw, &rival.evaluator),
         };
         self.0.iter().map(standing).collect()

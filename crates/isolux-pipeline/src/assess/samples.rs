@@ -1,8 +1,7 @@
 //! Single frames before and after standardization, to look at.
 
-use isolux::{Channels, Frame, IntegrationTime, Plane, Standardized, Standardizer};
+use isolux::{Channels, Frame, IntegrationTime, Plane, Standardizer};
 
-use crate::chain::Chain;
 use crate::error::PipelineError;
 use crate::frames;
 use crate::observer::{Observer, Work};
@@ -31,15 +30,13 @@ pub fn sample_frames(
     indices: &[usize],
 ) -> Result<Vec<SampleFrame>, PipelineError> {
     let facts = source.facts();
-    let (mut frame, mut out) = (Frame::new(facts.shape), Standardized::new(facts.shape));
-    let mut chain = Chain::new(standardizer);
-    let mut smoothed = chain.smoothed();
-    let wanted = standardizer.needed() | Channels::INTEGRATION_TIME;
+    let mut frame = Frame::new(facts.shape);
+    let mut stream = standardizer.stream();
     let mut samples = Vec::new();
     for &index in indices {
-        chain.read_alone(source, index, wanted, &mut frame)?;
-        let standardized = chain.standardize(&frame, &mut smoothed, &mut out);
-        standardized.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))?;
+        frames::read_alone(source, index, Channels::INTEGRATION_TIME, &mut stream, &mut frame)?;
+        let out = stream.push(&frame);
+        let out = out.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))?;
         samples.push(SampleFrame {
             index,
             integration_time_us: single_time_us(&frame),

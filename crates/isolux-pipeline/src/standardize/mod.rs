@@ -5,7 +5,6 @@ mod provenance;
 mod sink;
 mod summary;
 
-use isolux::standardize::FrameSummary;
 use isolux::{Calibration, Standardized, Standardizer};
 use isolux_io::recording::ChannelInfo;
 
@@ -61,7 +60,7 @@ pub fn standardize(
     })?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let chain = frames.as_ref().unwrap_or(standardizer);
-    let batch = Batch::new(&facts, chain, &kept, merging.is_some(), pool.current_num_threads());
+    let batch = Batch::new(&facts, chain, &kept);
     let output = Output { sink: &mut *sink, merging, summary: Summary::default() };
     let summary = each_batch(source, &facts, batch, &pool, output, observer)?;
     if summary.valid == 0 && summary.time_refused > 0 {
@@ -89,10 +88,13 @@ fn each_batch(
             break;
         }
         for (index, slot) in (next..).zip(batch.standardize(pool, count)) {
-            let frame = slot.outcome.clone().map_err(|error| error.into());
-            let frame = frame.map_err(PipelineError::frame(&facts.name, index))?;
-            output.take(&slot.out, &slot.kept, frame, &facts.name, index)?;
+            let outcome = slot.outcome.clone().map_err(|error| error.into());
+            outcome.map_err(PipelineError::frame(&facts.name, index))?;
+            output.take(&slot.out, &slot.kept, &facts.name, index)?;
             progress.step();
+        }
+        if next == 0 {
+            batch.grow(pool.current_num_threads(), output.merging.as_ref().map_or(0, Merging::bytes));
         }
         next += count;
     }
@@ -112,18 +114,17 @@ impl Output<'_> {
         &mut self,
         standardized: &Standardized,
         kept: &[Vec<u8>],
-        frame: FrameSummary,
         name: &str,
         index: usize,
     ) -> Result<(), PipelineError> {
         let Some(merging) = &mut self.merging else {
-            self.summary.add(frame);
+            self.summary.add(standardized.summary);
             return self.sink.push(OutputFrame { standardized, kept });
         };
-        let merged = merging.push(standardized, &frame).map_err(PipelineError::frame(name, index))?;
+        let merged = merging.push(standardized).map_err(PipelineError::frame(name, index))?;
         if let Some(merged) = merged {
-            self.summary.add(merged);
-            self.sink.push(OutputFrame { standardized: &merging.out, kept: &[] })?;
+            self.summary.add(merged.summary);
+            self.sink.push(OutputFrame { standardized: merged, kept: &[] })?;
         }
         Ok(())
     }

@@ -79,9 +79,6 @@ impl NativeSink {
 
 impl FrameSink for NativeSink {
     fn begin(&mut self, format: &OutputFormat) -> Result<(), PipelineError> {
-        let frame_count = format
-            .frame_count
-            .ok_or_else(|| PipelineError::LengthUnknown { recording: format.source.clone() })?;
         let mut channels = vec![
             ChannelSpec::image(VALUES, ElementType::F32, format.shape),
             ChannelSpec::image(FLAGS, ElementType::U16, format.shape),
@@ -91,7 +88,7 @@ impl FrameSink for NativeSink {
         }
         channels.extend(format.kept.iter().map(ChannelSpec::copy_of));
         let kept = format.kept.iter().map(|channel| channel.name.clone()).collect();
-        let writer = RecordingWriter::create(&self.path, frame_count, channels, self.overwrite)?;
+        let writer = RecordingWriter::create(&self.path, format.frame_count, channels, self.overwrite)?;
         self.open = Some((writer, kept));
         Ok(())
     }

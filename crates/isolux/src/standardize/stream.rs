@@ -88,6 +88,12 @@ impl Stream {
         Ok(())
     }
 
+    /// The last frame that was pushed, standardized; without pixels before the first one.
+    #[must_use]
+    pub fn last(&self) -> &Standardized {
+        &self.out
+    }
+
     /// Forgets the frames so far: the next one is the first of another scene.
     pub fn reset(&mut self) {
         if let Some(history) = &mut self.history {
