@@ -66,3 +66,17 @@ fn time_name(step: TimeStep) -> String {
 fn distance_name(step: DistanceStep) -> String {
     format!("{step:?}").to_lowercase()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_advice_follows_what_was_found() {
+        assert_eq!(
+            with("too dark", Some(Advice::UseTimeStep(TimeStep::Linear))),
+            "too dark: use --time linear"
+        );
+        assert_eq!(with("too dark", None), "too dark");
+    }
+}

@@ -56,7 +56,7 @@ fn a_recording_can_be_standardized_again() {
     std::fs::rename(sandbox.join("out"), sandbox.join("first")).unwrap();
     sandbox.run("standardize first -o second").done();
     assert_eq!(bits(&sandbox.f32s("second/standardized_amplitude.npy")), bits(&first.0));
-    let twice = ["`first`", "`flags`", "--keep-input cannot keep"];
+    let twice = ["`first`", "`flags`", "--keep-input"];
     sandbox.run("standardize first -o third --keep-input").refused(2, &twice);
     // Without its input there is nothing to start from, and the message says so.
     sandbox.run("standardize second -o third").refused(1, &["`second`", "no `amplitude`"]);

@@ -131,3 +131,37 @@ impl Merging {
         Ok(Some(&self.out))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use isolux::Frame;
+
+    use super::*;
+    use crate::observer::Unobserved;
+    use crate::source::{FramesInMemory, SourceFacts};
+
+    fn plan(times_us: &[f64], length: Option<u16>) -> Result<Brackets, PipelineError> {
+        let shape = Shape::new(1, 1);
+        let frame = |&time_us: &f64| {
+            let mut frame = Frame::new(shape);
+            frame.integration_time_us = IntegrationTime::PerFrame(time_us);
+            frame
+        };
+        let frames: Vec<Frame> = times_us.iter().map(frame).collect();
+        let facts = SourceFacts::new("still", shape, Channels::INTEGRATION_TIME);
+        Brackets::plan(&mut FramesInMemory::new(facts, &frames), length, &Unobserved)
+    }
+
+    #[test]
+    fn a_bracket_ends_where_a_time_recurs_or_after_so_many_frames() {
+        let times_us = [200.0, 400.0, 200.5, 400.0, 800.0];
+        assert_eq!(plan(&times_us, None).unwrap().lengths, [2, 3]);
+        let fixed = plan(&times_us, Some(2)).unwrap();
+        assert_eq!(fixed.lengths, [2, 2, 1]);
+        assert_eq!(
+            fixed.describe(),
+            "1 to 2 frames into one, weighted by 1/sigma², saturated pixels left out"
+        );
+        assert!(matches!(plan(&[200.0, 200.0], None), Err(PipelineError::NoBrackets { .. })));
+    }
+}

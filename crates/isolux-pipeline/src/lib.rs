@@ -9,6 +9,7 @@
 //! | [`mod@assess`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain |
 //! | [`mod@diagnose`] | a recording | whether it is raw, corrected, clipped |
 //! | [`mod@overview`] | a recording | what it holds |
+//! | [`figures`], [`page`] | an assessment | its figures in words, and a page about it |
 //! | [`simulate`] | a simulated scene | a recording |
 //!
 //! Recordings are [`FrameSource`]s, as are frames in memory and those of the simulated camera. Whoever looks on hands in
@@ -54,9 +55,11 @@ pub mod brackets;
 pub mod calibrate;
 pub mod diagnose;
 pub mod error;
+pub mod figures;
 pub mod frames;
 pub mod observer;
 pub mod overview;
+pub mod page;
 pub mod plan;
 pub mod remark;
 pub mod simulate;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use isolux::calibrate::CalibrateSettings;
-use isolux::standardize::{DenoiseStep, SigmaStep};
+use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, TimeStep};
 use isolux::{Channels, Choice, DenoiseRule, Frame};
 use isolux_camera::{CameraModel, Scene, Simulation};
 use isolux_pipeline::calibrate::measure;
@@ -12,8 +12,8 @@ use isolux_pipeline::simulate::{Extras, SimulatedFrames, record};
 use isolux_pipeline::standardize::{FrameSink, OutputFormat, OutputFrame};
 use isolux_pipeline::{
     AssessOptions, Brackets, CalibrationPaths, CalibrationSources, FrameSource, FramesInMemory, NativeSink,
-    Observer, PipelineError, Remark, SourceFacts, StandardizeOptions, Unobserved, Work, assess, calibrate, diagnose,
-    overview, plan, standardize,
+    Observer, PipelineError, Remark, SourceFacts, StandardizeOptions, Unobserved, Work, assess, calibrate,
+    diagnose, overview, plan, standardize,
 };
 
 const SCENE: &str = "office-desk";
@@ -153,7 +153,8 @@ fn frames_of_unknown_number_give_the_same() {
 fn an_observer_that_cancels_leaves_no_output() {
     let simulation = simulation(SCENE);
     let folder = tempfile::tempdir().unwrap();
-    let recorded = record(&simulation, Extras::default(), &folder.path().join("rec"), false, &Witness::cancelling(1));
+    let recorded =
+        record(&simulation, Extras::default(), &folder.path().join("rec"), false, &Witness::cancelling(1));
     assert!(matches!(recorded, Err(PipelineError::Interrupted)));
     assert_eq!(entries(folder.path()), 0);
     let mut frames = SimulatedFrames::new(&simulation);
@@ -194,8 +195,8 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn remarks_are_delivered() {
-    let (simulation, witness) = (simulation(SCENE), Witness::default());
-    let mut frames = SimulatedFrames::new(&simulation);
+    let (desk, witness) = (simulation(SCENE), Witness::default());
+    let mut frames = SimulatedFrames::new(&desk);
     plan(&Choice::default(), None, &mut frames, &witness).unwrap();
     let remarks = witness.remarks.take();
     assert!(remarks.iter().any(|remark| matches!(remark, Remark::Plan(_))), "{remarks:?}");
@@ -274,8 +275,9 @@ fn errors_name_the_recording_and_speak_no_command_line() {
     let error = Brackets::plan(&mut same, None, &Unobserved).unwrap_err();
     assert!(matches!(error, PipelineError::NoBrackets { .. }));
     assert_eq!(error.advice(), Some(isolux::Advice::GiveBracketLength));
-    shown.integration_time_us = isolux::IntegrationTime::Unknown;
-    let mut timeless = FramesInMemory::new(frames.facts(), [&shown]);
+    let mut without_time = shown.clone();
+    without_time.integration_time_us = isolux::IntegrationTime::Unknown;
+    let mut timeless = FramesInMemory::new(frames.facts(), [&without_time]);
     let error = Brackets::plan(&mut timeless, None, &Unobserved).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("`wall-sweep-smoke`, frame 0") && !text.contains("--"), "{text}");
@@ -287,4 +289,12 @@ fn errors_name_the_recording_and_speak_no_command_line() {
     let options = StandardizeOptions { keep_input: true, ..options };
     let error = standardize(&mut same, &chain, &options, &mut Kept::default(), &Unobserved).unwrap_err();
     assert!(matches!(error, PipelineError::KeptOfMerged), "{error}");
+}
+
+#[test]
+fn the_textbook_goes_as_far_as_the_channels() {
+    let choice = Choice::textbook(Channels::AMPLITUDE | Channels::DISTANCE);
+    assert_eq!((choice.time, choice.distance), (Some(TimeStep::None), Some(DistanceStep::Square)));
+    let choice = Choice::textbook(Channels::AMPLITUDE | Channels::INTEGRATION_TIME);
+    assert_eq!((choice.time, choice.distance), (Some(TimeStep::Linear), Some(DistanceStep::None)));
 }

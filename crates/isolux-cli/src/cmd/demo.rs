@@ -9,13 +9,14 @@ use isolux::evaluate::Comparison;
 use isolux::{Calibration, Choice};
 use isolux_pipeline::assess::{Pixels, first_frames_at};
 use isolux_pipeline::{
-    AssessOptions, CalibrationPaths, FrameSource, NativeSink, StandardizeOptions, assess, plan, standardize,
+    AssessOptions, CalibrationPaths, FrameSource, NativeSink, StandardizeOptions, assess, page, plan,
+    standardize,
 };
 use isolux_report::page::{Page, Picture, Section};
 use serde_json::{Value, json};
 
 use crate::cmd::{calibrate, simulate};
-use crate::evaluation;
+use crate::evaluation::figures_table;
 use crate::failure::{Failure, Outcome};
 use crate::options::DemoArgs;
 use crate::terminal::{self, Terminal, interrupt};
@@ -187,14 +188,14 @@ impl Demo {
             AssessOptions { calibration: Some(calibration), pixels: Pixels::Trusted, rivals: false };
         let assessment = assess(&mut input, &standardizer, &options, &self.observer)?;
         terminal::print(format!("\n{}: {}\n", exhibit.scene, exhibit.shows.replace('-', " ")))?;
-        terminal::print(evaluation::figures_table(&assessment.comparison, |metric| {
+        terminal::print(figures_table(&assessment.comparison, |metric| {
             exhibit.figures.iter().any(|wanted| metric.starts_with(wanted))
         }))?;
         let frames = first_frames_at(&mut input, exhibit.pictured_us, &self.observer)?;
-        let pictures = evaluation::pictures(&mut input, &standardizer, &frames, exhibit.scene)?;
+        let pictures = page::pictures(&mut input, &standardizer, &frames, exhibit.scene)?;
         self.montage(exhibit, &pictures)?;
         let title = format!("{}: {}", exhibit.scene, exhibit.shows.replace('-', " "));
-        let section = evaluation::section(exhibit.scene, &title, &standardizer, &assessment, pictures);
+        let section = page::section(exhibit.scene, &title, &standardizer, &assessment, pictures);
         Ok((assessment.comparison, section))
     }
 

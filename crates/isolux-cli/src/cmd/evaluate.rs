@@ -5,10 +5,11 @@ use std::path::Path;
 use isolux::{Calibration, Standardizer};
 use isolux_io::Recording;
 use isolux_pipeline::assess::Pixels;
+use isolux_pipeline::page::{page, pictures};
 use isolux_pipeline::{AssessOptions, Assessment, FrameSource, assess, plan};
 use serde_json::json;
 
-use crate::evaluation::{figures_table, page, pictures, rivals_table};
+use crate::evaluation::{figures_table, rivals_table};
 use crate::failure::{Failure, Outcome};
 use crate::options::EvaluateArgs;
 use crate::output;
@@ -58,7 +59,7 @@ fn write_page(
     report: &Path,
 ) -> Outcome {
     let pictures = pictures(recording, standardizer, &assessment.shown_frames, "recording")?;
-    let page = page(recording.metadata(), standardizer, calibration, assessment, pictures);
+    let page = page(&recording.facts(), standardizer, calibration, assessment, pictures, "`isolux evaluate`");
     let html = isolux_report::render_with(&page, isolux_report::Companions::Absent).map_err(Failure::data)?;
     isolux_io::write_whole(report, html.as_bytes())
         .map_err(|error| Failure::data(format!("cannot write `{}`: {error}", report.display())))

@@ -1,8 +1,8 @@
 //! The figures of one chain before and after, as a table for the terminal.
 
 use isolux::evaluate::{Comparison, ComparisonRow};
+use isolux_pipeline::figures::{direction, untold, written};
 
-use super::words::{direction, untold, written};
 use crate::terminal::table;
 
 /// The figures whose name is wanted; those that the recording cannot tell are listed below with the reason.

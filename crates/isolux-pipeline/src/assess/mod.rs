@@ -44,6 +44,8 @@ pub struct AssessOptions<'a> {
 /// What the frames of a recording say before and after standardization.
 #[derive(Clone, Debug)]
 pub struct Assessment {
+    /// Number of frames.
+    pub frames: usize,
     /// The figures before and after.
     pub comparison: Comparison,
     /// The chains beside the chosen one.
@@ -115,6 +117,7 @@ pub fn assess(
         observer.remark(Remark::SceneMoved { share, integration_time_us });
     }
     Ok(Assessment {
+        frames: times.len(),
         comparison: Comparison::new(&evaluation.before, &evaluation.after),
         rivals: evaluation.rivals.standings(&evaluation.before),
         means: evaluation.means(),
@@ -132,4 +135,19 @@ fn shown_frames(times: &[Option<f64>], reference: Option<usize>) -> Vec<usize> {
     shown.sort_unstable();
     shown.dedup();
     shown.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shown_frames_span_the_times() {
+        let times = [400.0, 200.0, 800.0, 200.0].map(Some);
+        assert_eq!(shown_frames(&times, Some(0)), [0, 1, 2]);
+        assert_eq!(shown_frames(&times, Some(1)), [1, 2]);
+        // Without times, those in the first place, the middle and the last.
+        assert_eq!(shown_frames(&[None; 5], None), [0, 2, 4]);
+        assert_eq!(shown_frames(&[None], None), [0]);
+    }
 }

@@ -1,48 +1,50 @@
 //! The page of an evaluation: figures, curves, pictures.
 
-use isolux::evaluate::ComparisonRow;
+use std::path::Path;
+
+use isolux::evaluate::{ComparisonRow, Outcome};
 use isolux::{Calibration, Plane, Standardizer};
-use isolux_io::Metadata;
-use isolux_pipeline::assess::{MeanAtTime, SampleFrame, sample_frames};
-use isolux_pipeline::{Assessment, FrameSource};
 use isolux_report::page::{
     Axis, Block, Cell, Chart, Colours, Page, Picture, Scale, Section, Series, Stroke, Table,
 };
 
-use super::rivals_table::page_table;
-use super::words::direction;
-use crate::failure::Outcome;
+use crate::assess::{Assessment, MeanAtTime, SampleFrame, sample_frames};
+use crate::error::PipelineError;
+use crate::figures::{chain_heads, chain_rows, direction};
+use crate::source::{FrameSource, SourceFacts};
 
 /// Share of the valid pixels that the white end of a grey scale covers.
 const WHITE_QUANTILE: f64 = 0.995;
 
-/// A page about one recording.
-pub(crate) fn page(
-    metadata: &Metadata,
+/// A page about one recording; `made_by` names the program that makes it.
+#[must_use]
+pub fn page(
+    facts: &SourceFacts,
     standardizer: &Standardizer,
     calibration: Option<&Calibration>,
     assessment: &Assessment,
     pictures: Vec<Picture>,
+    made_by: &str,
 ) -> Page {
-    let name = metadata.path.file_name().map_or_else(|| "recording".into(), |name| name.to_string_lossy());
-    let camera = metadata.info.camera.as_deref().unwrap_or("an unnamed camera");
+    let unnamed = "an unnamed camera";
+    let name = Path::new(&facts.name).file_name();
+    let name = name.map_or_else(|| "recording".into(), |name| name.to_string_lossy());
+    let camera = facts.info.camera.as_deref().unwrap_or(unnamed);
     let by = calibration.map_or("textbook physics, without a calibration".to_owned(), |calibration| {
-        format!("the calibration of {}", calibration.camera.as_deref().unwrap_or("an unnamed camera"))
+        format!("the calibration of {}", calibration.camera.as_deref().unwrap_or(unnamed))
     });
+    let frames = assessment.frames;
     Page {
         title: format!("{name}: before and after standardization"),
-        lead: format!(
-            "{} frames of {} by {camera}, standardized with {by}.",
-            metadata.frame_count.map_or("an unknown number of".to_owned(), |count| count.to_string()),
-            metadata.shape
-        ),
+        lead: format!("{frames} frames of {} by {camera}, standardized with {by}.", facts.shape),
         sections: vec![section("recording", "Before and after", standardizer, assessment, pictures)],
-        colophon: format!("Made by isolux {} with `isolux evaluate`.", env!("CARGO_PKG_VERSION")),
+        colophon: format!("Made by isolux {} with {made_by}.", env!("CARGO_PKG_VERSION")),
     }
 }
 
 /// The part of a page about one recording; `id` makes its anchors unique.
-pub(crate) fn section(
+#[must_use]
+pub fn section(
     id: &str,
     title: &str,
     standardizer: &Standardizer,
@@ -62,7 +64,7 @@ pub(crate) fn section(
     }
     blocks.push(Block::Table(figures_table(id, assessment)));
     if !assessment.rivals.is_empty() {
-        blocks.push(Block::Table(page_table(id, assessment)));
+        blocks.push(Block::Table(chains_table(id, assessment)));
     }
     Section { id: id.to_owned(), title: title.to_owned(), blocks }
 }
@@ -104,7 +106,7 @@ fn figure_row(row: &ComparisonRow) -> Vec<Cell> {
         "ratio" => ("%", 100.0, 2),
         unit => (unit, 1.0, 3),
     };
-    let value = |value: &isolux::evaluate::Outcome<f64>| match value {
+    let value = |value: &Outcome<f64>| match value {
         Ok(value) => Cell::Number { value: factor * value, decimals },
         Err(reason) => Cell::Missing(reason.to_string()),
     };
@@ -124,12 +126,15 @@ fn figure_row(row: &ComparisonRow) -> Vec<Cell> {
 }
 
 /// Some frames before and after; all raw ones on one grey scale, all standardized ones on another.
-pub(crate) fn pictures(
+///
+/// # Errors
+/// Those of [`sample_frames`].
+pub fn pictures(
     recording: &mut dyn FrameSource,
     standardizer: &Standardizer,
     indices: &[usize],
     id: &str,
-) -> Outcome<Vec<Picture>> {
+) -> Result<Vec<Picture>, PipelineError> {
     let frames = sample_frames(recording, standardizer, indices)?;
     let mut pictures = row(id, "Raw", &frames, |frame| &frame.raw);
     pictures.extend(row(id, "Standardized", &frames, |frame| &frame.standardized));
@@ -154,6 +159,19 @@ fn row(id: &str, kind: &str, frames: &[SampleFrame], plane: fn(&SampleFrame) -> 
         }
     };
     frames.iter().enumerate().map(picture).collect()
+}
+
+/// The chosen chain beside its rivals.
+fn chains_table(id: &str, assessment: &Assessment) -> Table {
+    let cells = |cells: Vec<String>| cells.into_iter().map(Cell::Text).collect();
+    Table {
+        id: format!("{id}-beside"),
+        caption: "The same frames by the textbook's chain (A d²/t), the paper's and the chosen one; in brackets the \
+                  share of the values behind each figure."
+            .to_owned(),
+        columns: chain_heads(assessment),
+        rows: chain_rows(assessment).into_iter().map(|row| cells(row.cells)).collect(),
+    }
 }
 
 /// The value below which nearly all valid pixels lie; 1 where there are none.
