@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
-use isolux::motion::MotionWatch;
+use isolux::still_scene::MotionWatch;
 use isolux::{Calibration, Channels, Frame, IntegrationTime, PixelFlags, Plane, Standardized, Standardizer};
 use isolux_io::Recording;
 

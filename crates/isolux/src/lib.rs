@@ -35,30 +35,22 @@ pub mod calibration;
 pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
-pub mod flags;
-pub mod frame;
-pub mod geometry;
-mod hash;
-pub mod motion;
-mod noise;
-mod normals;
-pub mod phase;
-pub mod plane;
-mod quantile;
-mod refusal;
-pub mod regression;
+mod frame;
+mod numerics;
+mod outcome_json;
 pub mod specular;
 pub mod standardize;
-pub mod statistics;
+pub mod still_scene;
+mod surface;
 pub mod terms;
 
 pub use advice::{Advice, RecordingKind};
 pub use calibration::{Calibration, Reference};
 pub use denoise::DenoiseRule;
-pub use flags::PixelFlags;
-pub use frame::{Channels, Frame, IntegrationTime};
-pub use geometry::Intrinsics;
-pub use phase::PhaseConvention;
-pub use plane::{Plane, Shape, ShapeError, Window};
+pub use frame::{
+    Channels, Frame, IntegrationTime, Intrinsics, PhaseConvention, PixelFlags, Plane, Shape, ShapeError,
+    Window, phase,
+};
+pub use numerics::statistics;
 pub use specular::SpecularRule;
 pub use standardize::{Choice, Standardized, Standardizer};

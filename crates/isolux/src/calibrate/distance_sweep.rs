@@ -240,7 +240,7 @@ fn decay(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{Plane, Shape};
+    use crate::frame::{Plane, Shape};
 
     /// A board at `distance_m` with one row brighter by `texture_dn`, the only "noise" there is.
     fn frame(time_us: f64, distance_m: f32, amplitude_dn: f32, noise_dn: f32) -> Frame {

@@ -142,6 +142,6 @@ impl Fitted<'_> {
     fn cosines(&self) -> [f64; 2] {
         let kept = self.observations.iter().zip(&self.fit.weights).filter(|(_, weight)| **weight > 0.0);
         let mut cosines: Vec<f64> = kept.map(|(observation, _)| f64::from(observation.cosine)).collect();
-        [0.001, 0.999].map(|share| crate::statistics::quantile(&mut cosines, share).unwrap_or(1.0))
+        [0.001, 0.999].map(|share| crate::numerics::statistics::quantile(&mut cosines, share).unwrap_or(1.0))
     }
 }

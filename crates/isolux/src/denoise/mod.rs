@@ -12,9 +12,9 @@
 //! | [`DenoiseRule::Plane`] | 7×7 | quality, slanted surfaces |
 //! | [`DenoiseRule::Temporal`] | 8 frames | still scenes; see [`TemporalMean`] |
 
+mod facet;
 mod median;
 mod noise;
-mod plane;
 mod temporal;
 #[cfg(test)]
 mod tests;
@@ -22,9 +22,7 @@ mod wiener;
 
 pub use temporal::TemporalMean;
 
-use crate::flags::PixelFlags;
-use crate::frame::Frame;
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, PixelFlags, Plane, Shape};
 use noise::NoiseScale;
 use wiener::Wiener;
 
@@ -61,7 +59,7 @@ impl DenoiseRule {
         match self {
             Self::Median => window(median::RADIUS),
             Self::Wiener => format!("{}, σ ∝ 1/amplitude estimated per frame", window(wiener::RADIUS)),
-            Self::Plane => format!("{}, σ ∝ 1/amplitude estimated per frame", window(plane::RADIUS)),
+            Self::Plane => format!("{}, σ ∝ 1/amplitude estimated per frame", window(facet::RADIUS)),
             Self::Temporal => format!("last {} frames, weighted by amplitude²", TemporalMean::FRAMES),
         }
     }
@@ -86,7 +84,7 @@ pub(crate) struct Denoiser {
     /// `σ_d² a²` of the last frame that was denoised by a rule that needs it, m² DN².
     scale: f64,
     wiener: Wiener,
-    guide: plane::Guide,
+    guide: facet::Guide,
 }
 
 /// A frame's distances after denoising.

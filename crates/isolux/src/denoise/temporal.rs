@@ -1,8 +1,7 @@
 //! `temporal`: the mean distance of each pixel over the last frames of a still scene.
 
 use super::measured;
-use crate::frame::Frame;
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, Plane, Shape};
 use crate::standardize::StandardizeError;
 
 /// The last frames of a stream, and the mean of their distances, weighted by `1/σ_d² ∝ a²`: frames of several

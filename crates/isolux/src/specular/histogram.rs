@@ -4,7 +4,7 @@
 //! are settled here: 256 bins on [0, min(max, 4·P99)], smoothed by a 3-bin box, and a threshold that grows with
 //! the image.
 
-use crate::quantile::PositiveQuantiles;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// Bins of the histogram.
 const BINS: usize = 256;

@@ -5,8 +5,8 @@
 //! remains to be seen.
 
 use super::HistogramRule;
-use crate::flags::PixelFlags;
-use crate::quantile::PositiveQuantiles;
+use crate::frame::PixelFlags;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// M − c over c: room for the highlights above the cutoff.
 const ROOM: f64 = 0.25;

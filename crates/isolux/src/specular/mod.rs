@@ -1,18 +1,17 @@
 //! Specular highlights (section 2.3 of the paper): find a cutoff, limit what lies above it, flag it.
 
+mod deviations;
 mod histogram;
 mod knee;
 mod percent;
-mod sigma;
 
+pub use deviations::SigmaRule;
 pub use histogram::HistogramRule;
 pub use knee::KneeRule;
 pub use percent::PercentRule;
-pub use sigma::SigmaRule;
 
-use crate::flags::PixelFlags;
-use crate::plane::Plane;
-use crate::quantile::PositiveQuantiles;
+use crate::frame::{PixelFlags, Plane};
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// How the cutoff is found.
 #[derive(Clone, Copy, Debug, PartialEq)]

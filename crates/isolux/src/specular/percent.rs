@@ -1,7 +1,7 @@
 //! `percent`: the cutoff is a fraction of the maximum, or a quantile. The text of the paper says 90 % of the
 //! maximum, the caption of its figure 13 reads as the upper 10 % of the pixels: both are offered.
 
-use crate::quantile::PositiveQuantiles;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// Parameters of the percent rule.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,7 @@
 //! What the user asks for: a method, and single steps that override it.
 
 use crate::denoise::DenoiseRule;
-use crate::frame::Channels;
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
+use crate::frame::{Channels, Intrinsics, Shape};
 use crate::specular::SpecularRule;
 use crate::terms::NoiseModel;
 use crate::terms::response::ResponseTier;

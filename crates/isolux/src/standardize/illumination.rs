@@ -2,10 +2,8 @@
 
 use super::plan::{AnglePlan, IlluminationPlan, ProfilePlan};
 use super::{StandardizeError, kernel};
-use crate::flags::PixelFlags;
-use crate::frame::Frame;
-use crate::normals::Incidence;
-use crate::plane::Plane;
+use crate::frame::{Frame, PixelFlags, Plane};
+use crate::surface::Incidence;
 use crate::terms::angle;
 
 /// What the steps need of one frame.

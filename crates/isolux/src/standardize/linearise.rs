@@ -1,9 +1,7 @@
 //! What the response does to the amplitude before anything scales it: the values of a pixel without a full well.
 
 use super::StandardizeError;
-use crate::flags::PixelFlags;
-use crate::frame::{Channels, Frame, IntegrationTime};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Channels, Frame, IntegrationTime, PixelFlags, Plane, Shape};
 use crate::terms::response::{PlannedAmplitude, PlannedBins, PlannedIntensity, PlannedPixels};
 
 /// A tier of the response that is applied pixel by pixel.

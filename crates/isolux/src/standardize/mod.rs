@@ -21,12 +21,10 @@ pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
 use crate::denoise::{DenoiseRule, Denoiser, TemporalMean};
-use crate::flags::PixelFlags;
-use crate::frame::{Channels, Frame};
-use crate::normals::Incidence;
-use crate::plane::{Plane, Shape, ShapeError};
-use crate::quantile::PositiveQuantiles;
+use crate::frame::{Channels, Frame, PixelFlags, Plane, Shape, ShapeError};
+use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
+use crate::surface::Incidence;
 use crate::terms::DistanceGain;
 use illumination::Illumination;
 use kernel::{BLOCK, Block};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::plane::Shape;
+use crate::frame::Shape;
 
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,8 +10,7 @@
 use super::kernel::BLOCK;
 use super::plan::SigmaPlan;
 use crate::denoise::Denoiser;
-use crate::frame::{Frame, IntegrationTime};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, IntegrationTime, Plane, Shape};
 use crate::terms::noise::AmplitudeNoise;
 use crate::terms::{DistanceGain, DistanceTable};
 

@@ -2,8 +2,7 @@
 
 use super::StandardizeError;
 use super::plan::TimePlan;
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
+use crate::frame::{Frame, IntegrationTime, PixelFlags};
 use crate::terms::linear;
 use crate::terms::lut::LutAnswer;
 
@@ -121,7 +120,7 @@ impl Memo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{Plane, Shape};
+    use crate::frame::{Plane, Shape};
 
     #[test]
     fn a_map_of_times_gives_each_pixel_its_multiplier() {

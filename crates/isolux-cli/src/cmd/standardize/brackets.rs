@@ -7,9 +7,6 @@ use isolux_io::Recording;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
 
-/// Integration times less than this factor apart are one, as everywhere.
-const SAME_TIME_RATIO: f64 = 1.01;
-
 /// Consecutive brackets, by the number of frames of each.
 #[derive(Clone, Debug)]
 pub(crate) struct Brackets {
@@ -35,7 +32,7 @@ impl Brackets {
                      ends: say how many frames it has, --merge-bracket=N"
                 )));
             };
-            let same = |known: &f64| (known / time_us).max(time_us / known) < SAME_TIME_RATIO;
+            let same = |known: &f64| (known / time_us).max(time_us / known) < IntegrationTime::SAME_RATIO;
             if times_us.iter().any(same) {
                 lengths.push(times_us.len());
                 times_us.clear();

@@ -1,8 +1,7 @@
 //! The steps that take the illumination profile and the angle of incidence out.
 
 use super::Planner;
-use crate::frame::Channels;
-use crate::geometry::Intrinsics;
+use crate::frame::{Channels, Intrinsics};
 use crate::standardize::choice::{AngleStep, Method, ProfileStep};
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::angle::{LAMBERT, LEAST_COSINE};

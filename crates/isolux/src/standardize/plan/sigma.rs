@@ -3,7 +3,7 @@
 use super::Planner;
 use crate::calibration::Calibration;
 use crate::frame::Channels;
-use crate::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::standardize::choice::SigmaStep;
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::NoiseModel;

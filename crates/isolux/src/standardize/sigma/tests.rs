@@ -5,10 +5,9 @@ use super::super::{
 };
 use crate::calibration::{Calibration, Reference};
 use crate::denoise::DenoiseRule;
-use crate::frame::{Channels, Frame, IntegrationTime};
-use crate::hash::splitmix64;
-use crate::phase::SPEED_OF_LIGHT_M_PER_S;
-use crate::plane::{Plane, Shape};
+use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::{Channels, Frame, IntegrationTime, Plane, Shape};
+use crate::numerics::hash::splitmix64;
 use crate::terms::noise::{AmplitudeNoise, IntensityNoise, NoiseModel};
 
 const CHANNELS: Channels = Channels::AMPLITUDE.union(Channels::DISTANCE).union(Channels::INTEGRATION_TIME);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::ResponseError;
 use super::evidence::AmplitudeStack;
 use super::still::{LEAST_SAMPLES, StillScene};
-use crate::statistics::{SIGMA_PER_MAD, median, quantile};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
 
 /// Linear amplitude by amplitude.
@@ -268,7 +268,7 @@ fn non_negative(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Shape;
+    use crate::frame::Shape;
     use crate::terms::response::SoftWell;
 
     #[test]

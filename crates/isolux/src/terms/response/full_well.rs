@@ -6,7 +6,7 @@ use super::evidence::{PixelMeans, PixelSeries, plateau};
 use super::solve::{Model, Series, Solution, solve};
 use super::well::{InverseTable, SoftWell};
 use super::{ResponseError, check_softness};
-use crate::statistics::median;
+use crate::numerics::statistics::median;
 use crate::terms::{FitQuality, ParameterError, require, root_mean_square};
 
 /// Full well, softness and black level of a channel.

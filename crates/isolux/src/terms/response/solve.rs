@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use super::FullWell;
 use super::well::SoftWell;
-use crate::statistics::{SIGMA_PER_MAD, median};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median};
 
 /// What one pixel delivered over the times: R values each, and Q numbers of its own that explain them.
 #[derive(Clone, Debug)]

@@ -14,9 +14,9 @@ mod tests;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use crate::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 use cluster::Clusters;
-pub use loss::Loss;
+pub(crate) use loss::Loss;
 use solve::{Centred, Solution};
 
 /// Iterations with Huber's monotone weights, which find the neighbourhood of the solution from anywhere.
@@ -29,7 +29,7 @@ const SETTLED: f64 = 1e-6;
 /// Rows of one regression. Every row has a value for each column, a response, a weight, a group and, for each
 /// way in which errors may be shared, a cluster.
 #[derive(Clone, Debug)]
-pub struct Regression {
+pub(crate) struct Regression {
     columns: Vec<String>,
     intercepts: Intercepts,
     design: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Regression {
 
 /// Which constants the model has besides its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Intercepts {
+pub(crate) enum Intercepts {
     /// None: the response is 0 where all columns are.
     None,
     /// One for each group.
@@ -50,7 +50,7 @@ pub enum Intercepts {
 
 /// One row of a regression.
 #[derive(Clone, Copy, Debug)]
-pub struct Row<'a> {
+pub(crate) struct Row<'a> {
     /// A value for each column.
     pub columns: &'a [f64],
     /// The value to be explained.
@@ -66,7 +66,7 @@ pub struct Row<'a> {
 /// Why a regression has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum RegressionError {
+pub(crate) enum RegressionError {
     /// A row does not fit the columns, or holds a number that is not finite.
     #[error("row {row}: {columns} finite numbers, a finite response and a weight ≥ 0 expected")]
     Row {
@@ -109,7 +109,7 @@ pub enum RegressionError {
 
 /// One fitted coefficient.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Coefficient {
+pub(crate) struct Coefficient {
     /// Name of its column.
     pub column: String,
     /// The estimate, in units of the response per unit of the column.
@@ -127,7 +127,7 @@ pub struct Coefficient {
 
 /// A solved regression.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RegressionFit {
+pub(crate) struct RegressionFit {
     /// One for each column, in their order.
     pub coefficients: Vec<Coefficient>,
     /// Covariance of the coefficients, in their order.
@@ -149,7 +149,7 @@ pub struct RegressionFit {
 impl RegressionFit {
     /// The coefficient of the column of this name.
     #[must_use]
-    pub fn coefficient(&self, column: &str) -> Option<&Coefficient> {
+    pub(crate) fn coefficient(&self, column: &str) -> Option<&Coefficient> {
         self.coefficients.iter().find(|coefficient| coefficient.column == column)
     }
 }
@@ -157,7 +157,7 @@ impl RegressionFit {
 impl Regression {
     /// A regression on the named columns, without rows yet.
     #[must_use]
-    pub fn new(columns: impl IntoIterator<Item = impl Into<String>>, intercepts: Intercepts) -> Self {
+    pub(crate) fn new(columns: impl IntoIterator<Item = impl Into<String>>, intercepts: Intercepts) -> Self {
         Self {
             columns: columns.into_iter().map(Into::into).collect(),
             intercepts,
@@ -173,7 +173,7 @@ impl Regression {
     ///
     /// # Errors
     /// [`RegressionError::Row`] for a wrong number of values or clusters, or a number that is not finite.
-    pub fn push(&mut self, row: Row<'_>) -> Result<(), RegressionError> {
+    pub(crate) fn push(&mut self, row: Row<'_>) -> Result<(), RegressionError> {
         let number = self.response.len();
         if number == 0 {
             self.clusters = vec![Vec::new(); row.clusters.len()];
@@ -193,7 +193,7 @@ impl Regression {
 
     /// Number of rows.
     #[must_use]
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.response.len()
     }
 
@@ -205,7 +205,7 @@ impl Regression {
     ///
     /// # Errors
     /// [`RegressionError`] names the column that cannot be determined, or what there is too little of.
-    pub fn fit(&self, loss: Loss) -> Result<RegressionFit, RegressionError> {
+    pub(crate) fn fit(&self, loss: Loss) -> Result<RegressionFit, RegressionError> {
         let entering = self.entering();
         let (rows, groups) = (entering.iter().filter(|&&enters| enters).count(), self.group_count(&entering));
         let unknowns = self.columns.len() + groups;

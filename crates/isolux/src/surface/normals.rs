@@ -8,9 +8,7 @@
 //! root mean square, at best halved from round to round).
 
 use crate::denoise::{DenoiseRule, Denoiser};
-use crate::frame::Frame;
-use crate::geometry::Intrinsics;
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, Intrinsics, Plane, Shape};
 
 /// Samples to either side of the middle one.
 const REACH: i64 = 4;

@@ -23,6 +23,12 @@ impl Shape {
     pub const fn pixels(self) -> usize {
         self.height * self.width
     }
+
+    /// Row and column of the pixel at `index`, row by row. The image must not be empty.
+    #[must_use]
+    pub const fn place(self, index: usize) -> (usize, usize) {
+        (index / self.width, index % self.width)
+    }
 }
 
 impl fmt::Display for Shape {

@@ -7,7 +7,7 @@ const TUKEY: f64 = 4.685;
 
 /// How much a residual counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Loss {
+pub(crate) enum Loss {
     /// Every residual by its square: the average relation, also where the model is but a rough one.
     LeastSquares,
     /// Tukey's biweight, c = 4.685 σ: residuals beyond c do not count at all. The relation of the majority.

@@ -75,7 +75,7 @@ impl Guide {
 
     /// The distance, and its variance over `k`.
     fn pixel(&self, image: Image<'_>, k: f64, index: usize) -> (f32, f64) {
-        let (y, x) = (index / image.shape.width, index % image.shape.width);
+        let (y, x) = image.shape.place(index);
         let level = Surface { middle: f64::from(self.distance_m[index]), along_x: 0.0, along_y: 0.0 };
         let roughly = self.sums(image, k, (y, x), level, &self.distance_m).surface(level);
         let sums = self.sums(image, k, (y, x), roughly, image.distance_m);

@@ -1,0 +1,5 @@
+//! Surfaces that the distances show: planes fitted to them, and the angle at which the light meets them.
+
+mod normals;
+
+pub(crate) use normals::Incidence;
