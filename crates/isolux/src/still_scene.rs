@@ -2,6 +2,7 @@
 
 use crate::frame::{Frame, Shape, Window};
 use crate::numerics::differences;
+use crate::numerics::statistics::upper_median;
 
 /// The image is compared in this many blocks along each side.
 const BLOCKS: usize = 8;
@@ -116,10 +117,10 @@ fn blocks(shape: Shape) -> impl Iterator<Item = Window> {
     })
 }
 
+/// Of the finite values; NaN without any.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    upper_median(&mut values).unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! the tiers of the response, on unseen cameras and exposures that nothing was fitted on.
 
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
+use isolux::phase::CLIPPED_SHARE;
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
 use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardized, Standardizer};
@@ -59,8 +60,6 @@ const SPAN: f64 = 8.0;
 const FITTED_FRAMES: u32 = 32;
 /// Frames whose mean counts as one tested exposure: what is measured is the compression, not the noise.
 const TEST_FRAMES: u32 = 64;
-/// Share of the clip level from which on a bin is clipped (methods, section 2).
-const CLIPPED: f64 = 0.985;
 const METHODS: [(&str, TimeStep, Option<ResponseTier>); 7] = [
     ("lut", TimeStep::Lut, None),
     ("linear", TimeStep::Linear, None),
@@ -192,7 +191,7 @@ fn for_each(
     simulation: &Simulation,
     mut visit: impl FnMut(&SimulatedFrame) -> Result<(), PaperError>,
 ) -> Result<(), PaperError> {
-    let clip_dn = (CLIPPED * simulation.model().clip_dn()) as f32;
+    let clip_dn = (CLIPPED_SHARE * simulation.model().clip_dn()) as f32;
     let mut out = SimulatedFrame::new(simulation.shape());
     for index in 0..simulation.len() {
         simulation.render_frame(index, &mut out)?;

@@ -10,6 +10,7 @@ use super::{CalibrateError, CalibrateSettings, noise_floor, single_time};
 use crate::calibration::NoiseFloor;
 use crate::frame::{Frame, PixelFlags, Window};
 use crate::numerics::differences;
+use crate::numerics::statistics::upper_median;
 use crate::still_scene::MotionWatch;
 use crate::terms::lut::{ExposureSample, Lut};
 use crate::terms::{Source, root_mean_square};
@@ -234,8 +235,7 @@ fn settling<'a>(
         _ => None,
     };
     let mut drifts: Vec<f64> = times.filter_map(drift).collect();
-    drifts.sort_by(f64::total_cmp);
-    let median = *drifts.get(drifts.len() / 2)?;
+    let median = upper_median(&mut drifts)?;
     (median.abs() > SETTLING_SHARE)
         .then(|| FitWarning::Settling { recording: recording.to_owned(), relative_drift: median })
 }

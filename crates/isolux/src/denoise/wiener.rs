@@ -11,7 +11,7 @@
 //!
 //! With `σ_d² = k/a²`, the weights are `a²/k`, and `n² = k N / Σa²`.
 
-use super::Image;
+use super::image::Image;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 2;

@@ -3,9 +3,8 @@
 use super::sample::Observed;
 use super::untold::{Outcome, Untold};
 use super::{MINIMUM_DISTANCE_RATIO, MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS, SAME_TIME_RATIO};
-use crate::numerics::regression::{
-    Coefficient, Intercepts, Loss, Regression, RegressionError, RegressionFit, Row,
-};
+use crate::numerics::regression::{Coefficient, Intercepts, Regression, RegressionError, RegressionFit, Row};
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::quantile;
 
 pub(super) const TIME: &str = "integration time";

@@ -7,7 +7,7 @@ use super::effect::Estimate;
 use super::sample::Observed;
 use super::scaling::Scaling;
 use super::untold::{Outcome, Untold};
-use crate::numerics::regression::Loss;
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::quantile;
 
 /// Vendor amplitudes of at most this many different values group by value, others by bins of 5 %.

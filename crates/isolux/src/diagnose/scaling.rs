@@ -8,7 +8,7 @@ use super::effect::Estimate;
 use super::material::{RangeExponent, by_distance};
 use super::sample::Observed;
 use super::untold::Outcome;
-use crate::numerics::regression::Loss;
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::median;
 
 /// Integration times that are listed, shortest first.

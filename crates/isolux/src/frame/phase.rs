@@ -7,6 +7,10 @@ use super::{Plane, ShapeError};
 /// Speed of light in vacuum, m/s (exact, SI).
 pub const SPEED_OF_LIGHT_M_PER_S: f64 = 299_792_458.0;
 
+/// Share of the clip level from which on a phase sample counts as clipped: read noise spreads the clip (methods,
+/// section 2).
+pub const CLIPPED_SHARE: f64 = 0.985;
+
 /// How a vendor delivers the bins: vendors differ in order and sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

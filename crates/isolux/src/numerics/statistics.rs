@@ -30,6 +30,13 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     quantile(values, 0.5)
 }
 
+/// The median; the upper of the middle two for an even count, so that it is one of the values. Reorders `values`.
+#[must_use]
+pub fn upper_median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
 /// The median absolute deviation from the median, in the unit of `values`, which are overwritten. Times
 /// [`SIGMA_PER_MAD`] it estimates σ.
 #[must_use]
@@ -155,11 +162,12 @@ mod tests {
         assert_eq!(quantile(&mut values, 0.5), Some(2.5));
         assert!((quantile(&mut values, 0.95).unwrap() - (3.0 + 0.85 * 7.0)).abs() < 1e-12);
         assert_eq!(quantile(&mut values, 1.0), Some(10.0));
+        assert_eq!(upper_median(&mut values), Some(3.0));
     }
 
     #[test]
     fn what_cannot_be_computed_is_none() {
-        assert_eq!(median(&mut []), None);
+        assert_eq!((median(&mut []), upper_median(&mut [])), (None, None));
         assert_eq!(quantile(&mut [1.0], 1.5), None);
         assert_eq!(quantile(&mut [1.0], f64::NAN), None);
         assert_eq!(median_absolute_deviation(&mut []), None);

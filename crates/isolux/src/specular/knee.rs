@@ -4,7 +4,7 @@
 //! slope 1 at c, increasing, and never above M. What is brighter stays brighter, so that the shape of a highlight
 //! remains to be seen.
 
-use super::HistogramRule;
+use super::histogram::HistogramRule;
 use crate::frame::PixelFlags;
 use crate::numerics::quantile::PositiveQuantiles;
 

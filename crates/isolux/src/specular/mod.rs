@@ -3,6 +3,7 @@
 mod deviations;
 mod histogram;
 mod knee;
+mod maximum;
 mod percent;
 
 pub use deviations::SigmaRule;
@@ -77,15 +78,4 @@ fn clip(values: &mut [f32], flags: &mut [PixelFlags], cutoff: f32) {
         *value = if above { cutoff } else { *value };
         *flags |= PixelFlags::from_bits_retain(u16::from(above) * PixelFlags::SPECULAR.bits());
     }
-}
-
-/// Largest positive finite value, or 0. In lanes, so that the loop vectorizes.
-fn maximum(values: &[f32]) -> f32 {
-    let mut lanes = [0.0f32; 16];
-    for chunk in values.chunks(lanes.len()) {
-        for (largest, &value) in lanes.iter_mut().zip(chunk) {
-            *largest = if value > *largest && value < f32::INFINITY { value } else { *largest };
-        }
-    }
-    lanes.into_iter().fold(0.0, f32::max)
 }

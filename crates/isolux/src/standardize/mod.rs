@@ -20,7 +20,7 @@ pub use merge::{BracketMerge, MergeError};
 pub use report::{AppliedStep, Note, PlanError};
 
 use crate::calibration::Calibration;
-use crate::denoise::{DenoiseRule, Denoiser, TemporalMean};
+use crate::denoise::{DenoiseError, DenoiseRule, Denoiser, TemporalMean};
 use crate::frame::{Channels, Frame, PixelFlags, Plane, Shape, ShapeError};
 use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
@@ -128,6 +128,15 @@ pub enum StandardizeError {
          feed every frame to the planned `history` and use `apply_at`"
     )]
     HistoryMissing,
+}
+
+impl From<DenoiseError> for StandardizeError {
+    fn from(error: DenoiseError) -> Self {
+        match error {
+            DenoiseError::Shape(error) => Self::Shape(error),
+            DenoiseError::DistanceMissing => Self::DistanceMissing,
+        }
+    }
 }
 
 impl Standardized {

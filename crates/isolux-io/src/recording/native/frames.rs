@@ -10,9 +10,6 @@ use crate::recording::element::decode_f32;
 use crate::recording::info::{DistanceKind, DistanceUnit, RecordingInfo};
 use crate::recording::metadata::Metadata;
 
-/// A phase sample from this fraction of the clip level on is taken for clipped: read noise spreads the clip.
-const CLIPPED_FRACTION: f32 = 0.985;
-
 /// Memory that lives from frame to frame.
 #[derive(Default)]
 pub(crate) struct Scratch {
@@ -49,7 +46,7 @@ pub(crate) fn read(
         frame.amplitude.fill(f32::NAN);
     }
     if let (Some(bins), Some(clip)) = (bins, info.saturated_phase_sample) {
-        flag_clipped(bins, clip * CLIPPED_FRACTION, &mut frame.flags);
+        flag_clipped(bins, clip * phase::CLIPPED_SHARE as f32, &mut frame.flags);
     }
     if wants(Channels::DISTANCE) {
         let distance_m = plane_of(&mut frame.distance_m, shape);

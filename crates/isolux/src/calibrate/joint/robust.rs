@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::JointError;
 use super::problem::{Normal, Problem};
-use crate::numerics::regression::Loss;
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 /// Iterations with Huber's weights, which have one solution, before Tukey's.

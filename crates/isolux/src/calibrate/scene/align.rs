@@ -6,7 +6,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::rigid::Rigid;
 use super::surfaces::{SAME_NORMAL, Surface, Surfaces};
 use super::view::View;
-use crate::numerics::regression::Loss;
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 const ITERATIONS: usize = 60;

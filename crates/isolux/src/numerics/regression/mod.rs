@@ -5,7 +5,6 @@
 //! (neighbouring pixels, one frame); the intervals allow for that.
 
 mod cluster;
-mod loss;
 mod rank;
 mod solve;
 #[cfg(test)]
@@ -14,9 +13,9 @@ mod tests;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 use cluster::Clusters;
-pub(crate) use loss::Loss;
 use solve::{Centred, Solution};
 
 /// Iterations with Huber's monotone weights, which find the neighbourhood of the solution from anywhere.

@@ -1,7 +1,7 @@
 //! Robust weights, and the choice of curvature weight and harmonic by cross-validation.
 
 use super::rows::{Model, Rows, Solution};
-use crate::numerics::regression::Loss;
+use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 /// Curvature weights tried: 10^(k/2) from 1e-9 to 1e2. The lowest follows a kink from one position to the next, the
