@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{RegressionError, Solution};
+use super::error::RegressionError;
+use super::solve::Solution;
 
 /// Clusters below which a variance between them is no estimate.
 const MINIMUM_CLUSTERS: usize = 3;
