@@ -1,5 +1,7 @@
 //! From the light on a pixel to its four digital numbers, with noise.
 
+use isolux::phase::CLIPPED_SHARE;
+
 use crate::full_well::{FullWell, FullWellTable};
 use crate::model::CameraModel;
 use crate::noise::{Noise, Purpose};
@@ -17,9 +19,6 @@ pub(crate) struct Readout {
 }
 
 impl Readout {
-    /// Share of the clip level above which a bin is not to be trusted (methods, section 2).
-    const SATURATED_SHARE: f64 = 0.985;
-
     pub(crate) fn new(model: &CameraModel) -> Self {
         Self {
             well: FullWellTable::new(&FullWell::of(model)),
@@ -27,7 +26,7 @@ impl Readout {
             gain_dn_per_electron: model.gain_dn_per_electron,
             black_level_dn: model.black_level_dn,
             adc_maximum_dn: f64::from(model.adc_maximum_dn),
-            saturated_dn: (Self::SATURATED_SHARE * model.clip_dn()) as u16,
+            saturated_dn: (CLIPPED_SHARE * model.clip_dn()) as u16,
         }
     }
 

@@ -36,32 +36,25 @@ mod choice;
 pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
-pub mod flags;
-pub mod frame;
-pub mod geometry;
-mod hash;
-pub mod motion;
+mod frame;
+mod memory;
 pub mod names;
-mod noise;
-mod normals;
-pub mod phase;
-pub mod plane;
-mod quantile;
-mod refusal;
-pub mod regression;
+mod numerics;
+mod outcome_json;
 pub mod specular;
 pub mod standardize;
-pub mod statistics;
+pub mod still_scene;
+mod surface;
 pub mod terms;
 
 pub use advice::{Advice, RecordingKind};
 pub use calibration::{Calibration, Reference};
 pub use choice::Choice;
 pub use denoise::DenoiseRule;
-pub use flags::PixelFlags;
-pub use frame::{Channels, Frame, IntegrationTime};
-pub use geometry::Intrinsics;
-pub use phase::PhaseConvention;
-pub use plane::{Plane, Shape, ShapeError, Window};
+pub use frame::{
+    Channels, Frame, IntegrationTime, Intrinsics, PhaseConvention, PixelFlags, Plane, Shape, ShapeError,
+    Window, phase,
+};
+pub use numerics::statistics;
 pub use specular::SpecularRule;
 pub use standardize::{RecordingTraits, Standardized, Standardizer, Stream};

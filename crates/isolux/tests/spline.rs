@@ -60,7 +60,7 @@ const NAMES: [&str; 5] = ["eq. 5", "d²", "cubic", "spline", "spline + cos 4φ"]
 
 /// The laws in the order of [`NAMES`], fitted on one sweep.
 fn laws(model: &CameraModel, decays: &[Decay]) -> [Law<'static>; 5] {
-    let cubic = Cubic::fit(decays, REFERENCE_M).unwrap().0.gain();
+    let cubic = Cubic::fit(decays, REFERENCE_M).unwrap().0.distance_law();
     let spline = Spline::fit(decays, REFERENCE_M, None).unwrap().0;
     let harmonic = Spline::fit(decays, REFERENCE_M, Some(model.modulation_frequency_hz)).unwrap().0;
     [

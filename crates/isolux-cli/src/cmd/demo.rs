@@ -180,7 +180,8 @@ impl Demo {
     /// Standardizes and evaluates one scene with the paper's method, and pictures it.
     fn show(&self, exhibit: &Exhibit, calibration: &Calibration) -> Outcome<(Comparison, Section)> {
         let mut input = isolux_io::open(&self.recording(exhibit.scene))?;
-        let standardizer = plan(&Choice::paper(), Some(calibration), input.facts().traits(), &mut input, &self.observer)?;
+        let standardizer =
+            plan(&Choice::paper(), Some(calibration), input.facts().traits(), &mut input, &self.observer)?;
         let mut sink = NativeSink::new(&self.folder.join("standardized").join(exhibit.scene), false);
         let options = StandardizeOptions { calibration: Some(calibration), ..StandardizeOptions::default() };
         standardize(&mut input, &standardizer, &options, &mut sink, &self.observer)?;

@@ -246,6 +246,5 @@ fn steps([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
 
 /// Median; NaN for none.
 fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    isolux::statistics::upper_median(&mut values).unwrap_or(f64::NAN)
 }

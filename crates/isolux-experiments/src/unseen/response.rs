@@ -5,6 +5,7 @@ mod exposures;
 mod stack;
 
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
+use isolux::phase::CLIPPED_SHARE;
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
 use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardized, Standardizer};

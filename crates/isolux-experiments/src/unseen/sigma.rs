@@ -2,7 +2,7 @@
 
 use isolux::calibrate::NoiseSurvey;
 use isolux::evaluate::SigmaTally;
-use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep};
+use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep, StandardizeError};
 use isolux::terms::NoiseModel;
 use isolux::{Channels, Choice, DenoiseRule, PixelFlags, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
@@ -182,7 +182,7 @@ pub fn measure(camera: &HeldOut, case: &SigmaCase) -> Result<SigmaFigures, Exper
                 if last.replace(pose) != Some(pose) {
                     history.reset();
                 }
-                history.push(frame, &mut smoothed)?;
+                history.push(frame, &mut smoothed).map_err(StandardizeError::from)?;
                 history.variance_left(&mut left);
                 noisy_plan.apply_denoised(frame, &smoothed, &left, &mut noisy)?;
             }

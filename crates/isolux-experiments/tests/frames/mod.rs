@@ -50,7 +50,5 @@ pub(crate) fn assert_close(found: &[f64], expected: &[f64], relative: f64, what:
 }
 
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+    isolux::statistics::median(&mut values).unwrap()
 }

@@ -7,6 +7,7 @@ use super::warning::FitWarning;
 use super::window::{Measurement, measure};
 use super::{CalibrateError, CalibrateSettings};
 use crate::frame::{Frame, IntegrationTime};
+use crate::numerics::statistics::upper_median;
 use crate::terms::Source;
 use crate::terms::cubic::{Decay, DecayPoint};
 
@@ -221,8 +222,7 @@ fn decay(
     }
     let usable = &sorted[peak..];
     let mut ratios: Vec<f64> = usable.iter().map(|p| p.mean(|m| m.signal_to_noise)).collect();
-    ratios.sort_by(f64::total_cmp);
-    let signal_to_noise = ratios[ratios.len() / 2];
+    let signal_to_noise = upper_median(&mut ratios)?;
     if signal_to_noise < LEAST_SIGNAL_TO_NOISE {
         let recording = recording.to_owned();
         warnings.push(FitWarning::LowSignal { recording, integration_time_us, signal_to_noise });
@@ -240,7 +240,7 @@ fn decay(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{Plane, Shape};
+    use crate::frame::{Plane, Shape};
 
     /// A board at `distance_m` with one row brighter by `texture_dn`, the only "noise" there is.
     fn frame(time_us: f64, distance_m: f32, amplitude_dn: f32, noise_dn: f32) -> Frame {

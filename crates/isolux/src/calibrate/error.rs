@@ -1,7 +1,7 @@
 //! Why a calibration fails.
 
 use super::{FitWarning, joint};
-use crate::plane::ShapeError;
+use crate::frame::ShapeError;
 use crate::standardize::StandardizeError;
 use crate::terms::cubic::CubicError;
 use crate::terms::lut::LutError;

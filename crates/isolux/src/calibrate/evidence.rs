@@ -1,8 +1,6 @@
 //! What an exposure sweep offers for the response: means of every pixel at each time, and of some pixels all channels.
 
-use crate::flags::PixelFlags;
-use crate::frame::Frame;
-use crate::plane::Shape;
+use crate::frame::{Frame, PixelFlags, Shape};
 use crate::terms::response::{AmplitudeStack, PixelMeans, PixelSeries};
 
 /// The evidence of one still scene.
@@ -141,7 +139,7 @@ fn sampled(pixels: usize) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Plane;
+    use crate::frame::Plane;
 
     #[test]
     fn a_run_is_one_image_and_what_is_invalid_once_has_no_mean() {

@@ -8,11 +8,10 @@ use super::runs::{Place, Runs};
 use super::warning::FitWarning;
 use super::{CalibrateError, CalibrateSettings, noise_floor, single_time};
 use crate::calibration::NoiseFloor;
-use crate::flags::PixelFlags;
-use crate::frame::Frame;
-use crate::motion::MotionWatch;
-use crate::noise;
-use crate::plane::Window;
+use crate::frame::{Frame, PixelFlags, Window};
+use crate::numerics::differences;
+use crate::numerics::statistics::upper_median;
+use crate::still_scene::MotionWatch;
 use crate::terms::lut::{ExposureSample, Lut};
 use crate::terms::{Source, root_mean_square};
 
@@ -115,7 +114,7 @@ impl ExposureSweep {
         let sums = self.sum(frame);
         let window = window_values(frame);
         let noise = match (&self.previous, place) {
-            (Some(previous), Place::Later) => noise::temporal(previous, &window),
+            (Some(previous), Place::Later) => differences::temporal(previous, &window),
             _ => None,
         };
         self.previous = Some(window);
@@ -236,8 +235,7 @@ fn settling<'a>(
         _ => None,
     };
     let mut drifts: Vec<f64> = times.filter_map(drift).collect();
-    drifts.sort_by(f64::total_cmp);
-    let median = *drifts.get(drifts.len() / 2)?;
+    let median = upper_median(&mut drifts)?;
     (median.abs() > SETTLING_SHARE)
         .then(|| FitWarning::Settling { recording: recording.to_owned(), relative_drift: median })
 }
@@ -279,8 +277,7 @@ fn window_values(frame: &Frame) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::IntegrationTime;
-    use crate::plane::Shape;
+    use crate::frame::{IntegrationTime, Shape};
 
     fn frame(time_us: f64, amplitudes: &[f32]) -> Frame {
         let mut frame = Frame::new(Shape::new(1, amplitudes.len()));

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::FitWarning;
 use super::joint::{self, Factor, JointFit, JointModel, Observation};
 use crate::calibration::Calibration;
+use crate::numerics::robust::TUKEY_CUTOFF;
 use crate::terms::{Angle, FitQuality, Profile, Source, Spline, root_mean_square};
 
 /// Cells of the image whose ln v has a larger predicted standard error do not belong to the profile's support.
@@ -31,7 +32,7 @@ pub(super) fn held_out(
         tested.iter().for_each(|&index| training[index].weight = 0.0);
         let Ok(fit) = joint::solve(&training, model) else { continue };
         // Outliers of the whole are no test of the law: their share is told beside it.
-        let cutoff = joint::CUTOFF * fit.sigma;
+        let cutoff = TUKEY_CUTOFF * fit.sigma;
         let errors = tested.iter().map(|&index| {
             let scale = f64::from(observations[index].weight).sqrt();
             (fit.residuals[index], fit.residuals[index].abs() * scale < cutoff)
@@ -142,6 +143,6 @@ impl Fitted<'_> {
     fn cosines(&self) -> [f64; 2] {
         let kept = self.observations.iter().zip(&self.fit.weights).filter(|(_, weight)| **weight > 0.0);
         let mut cosines: Vec<f64> = kept.map(|(observation, _)| f64::from(observation.cosine)).collect();
-        [0.001, 0.999].map(|share| crate::statistics::quantile(&mut cosines, share).unwrap_or(1.0))
+        [0.001, 0.999].map(|share| crate::numerics::statistics::quantile(&mut cosines, share).unwrap_or(1.0))
     }
 }

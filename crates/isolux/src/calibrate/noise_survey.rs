@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::noise::trimmed_deviation;
-use crate::plane::Shape;
-use crate::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
+use crate::frame::{Frame, IntegrationTime, PixelFlags, Shape};
+use crate::numerics::differences::trimmed_deviation;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use crate::terms::noise::NoiseCell;
 use crate::terms::{Noise, Source};
 
@@ -285,8 +283,8 @@ impl NoiseCells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hash::splitmix64;
-    use crate::plane::Plane;
+    use crate::frame::Plane;
+    use crate::numerics::hash::splitmix64;
 
     const READ_DN2: f64 = 4.0;
     const SHOT_DN2_PER_DN: f64 = 0.5;

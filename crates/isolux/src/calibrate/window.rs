@@ -1,8 +1,7 @@
 //! One frame of a distance sweep: what the central window says.
 
-use crate::frame::Frame;
-use crate::noise;
-use crate::plane::Window;
+use crate::frame::{Frame, Window};
+use crate::numerics::differences;
 
 /// Frames with more invalid pixels in the window than this share are left out.
 const INVALID_SHARE: f64 = 0.05;
@@ -35,7 +34,7 @@ impl Measurement {
     }
 
     pub(super) fn is_reliable(&self) -> bool {
-        self.distance_sd_m <= noise::DISTANCE_NOISE_SHARE * self.distance_m
+        self.distance_sd_m <= differences::DISTANCE_NOISE_SHARE * self.distance_m
     }
 }
 
@@ -55,7 +54,7 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
     let mean = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>() / count as f64;
     let deviation = |values: &[f64]| {
         // Noise that cannot be told is no reason to trust.
-        noise::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
+        differences::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
     };
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
     let distance_sd_m = deviation(&distances);

@@ -1,6 +1,6 @@
 //! `median`: the median of the valid distances of 3×3 pixels, the mean of the middle two where their number is even.
 
-use super::Image;
+use super::image::Image;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 1;

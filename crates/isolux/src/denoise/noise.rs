@@ -4,34 +4,31 @@
 //! the distances tell the product of both themselves: the mixed second difference of 2×2 pixels cancels every slope and
 //! every edge along a row or column, and the median of its magnitude passes over the others.
 
-use super::Image;
-use crate::plane::bytes;
+use super::image::Image;
+use crate::numerics::bit_histogram::BitHistogram;
+use crate::numerics::statistics::SIGMA_PER_MAD;
 
-/// Positive f32 order like their bits; the upper 13 (the sign is 0) make bins of at most 3 % width.
-const BINS: usize = 1 << 13;
-const SHIFT: u32 = 18;
+type Bins = BitHistogram<18>;
+
 /// About this many differences are enough: the standard error of the median is then below 1 %.
 const SAMPLES: usize = 1 << 16;
 /// Fewer make no estimate.
 const LEAST_SAMPLES: u32 = 16;
-/// Standard deviation of a normal variable over the median of its magnitude.
-const DEVIATION_OF_MEDIAN: f64 = 1.482_602_218_505_602;
-
 /// Working memory of the estimate.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NoiseScale {
-    bins: Vec<u32>,
+    /// Bins of 3 % width at most.
+    bins: Bins,
 }
 
 impl NoiseScale {
     pub(super) fn bytes(&self) -> usize {
-        bytes(&self.bins)
+        self.bins.bytes()
     }
 
     /// `k` in m² DN²; 0 where the frame tells no noise, so that nothing is denoised.
     pub(super) fn estimate(&mut self, image: Image<'_>) -> f64 {
         self.bins.clear();
-        self.bins.resize(BINS, 0);
         let width = image.shape.width;
         if width < 2 || image.shape.height < 2 {
             return 0.0;
@@ -46,7 +43,7 @@ impl NoiseScale {
                 let corners = |[above, below]: [&[f32]; 2]| [above[x], above[x + 1], below[x], below[x + 1]];
                 let magnitude = normalized_difference(corners(distances), corners(amplitudes));
                 if magnitude.is_finite() {
-                    self.bins[(magnitude.to_bits() >> SHIFT) as usize] += 1;
+                    self.bins.add(magnitude);
                     count += 1;
                 }
             }
@@ -54,23 +51,19 @@ impl NoiseScale {
         if count < LEAST_SAMPLES {
             return 0.0;
         }
-        let deviation = DEVIATION_OF_MEDIAN * self.median(count);
+        let deviation = SIGMA_PER_MAD * self.median(count);
         deviation * deviation
     }
 
     /// The median, taken as evenly spread within its bin.
     fn median(&self, count: u32) -> f64 {
-        let mut rank = count / 2;
-        for (bin, &inside) in (0u32..).zip(&self.bins) {
-            if rank < inside {
-                let [low, high] = [bin, bin + 1].map(|bin| f64::from(f32::from_bits(bin << SHIFT)));
-                // Bin 0 holds the zeros.
-                let place = (f64::from(rank) + 0.5) / f64::from(inside);
-                return if bin == 0 { 0.0 } else { low + place * (high - low) };
-            }
-            rank -= inside;
-        }
-        0.0
+        // Bin 0 holds the zeros.
+        let Some((bin, rank)) = self.bins.find(count as usize / 2).filter(|(bin, _)| *bin > 0) else {
+            return 0.0;
+        };
+        let [low, high] = [bin, bin + 1].map(|bin| f64::from(Bins::start(bin)));
+        let place = (rank as f64 + 0.5) / f64::from(self.bins.count(bin));
+        low + place * (high - low)
     }
 }
 

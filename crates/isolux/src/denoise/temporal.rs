@@ -1,9 +1,9 @@
 //! `temporal`: the mean distance of each pixel over the last frames of a still scene.
 
-use super::measured;
-use crate::frame::Frame;
-use crate::plane::{Plane, Shape, bytes};
-use crate::standardize::StandardizeError;
+use super::error::DenoiseError;
+use super::image::measured;
+use crate::frame::{Frame, Plane, Shape};
+use crate::memory::bytes;
 
 /// The last frames of a stream, and the mean of their distances, weighted by `1/σ_d² ∝ a²`: frames of several
 /// integration times may follow each other, as long as nothing moves. Feed it every frame in order; a frame of
@@ -51,10 +51,10 @@ impl TemporalMean {
     /// only when the shape changes.
     ///
     /// # Errors
-    /// [`StandardizeError`] when the frame has no distance, or its planes differ in shape.
-    pub fn push(&mut self, frame: &Frame, out: &mut Plane<f32>) -> Result<(), StandardizeError> {
+    /// [`DenoiseError`] when the frame has no distance, or its planes differ in shape.
+    pub fn push(&mut self, frame: &Frame, out: &mut Plane<f32>) -> Result<(), DenoiseError> {
         frame.check_shapes()?;
-        let distance_m = frame.distance_m.as_ref().ok_or(StandardizeError::DistanceMissing)?;
+        let distance_m = frame.distance_m.as_ref().ok_or(DenoiseError::DistanceMissing)?;
         if self.shape != frame.shape() {
             self.reset();
             self.shape = frame.shape();

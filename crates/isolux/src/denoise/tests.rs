@@ -1,7 +1,10 @@
 //! The rules against naive versions of themselves, and the laws that they keep.
 
+use super::image::{Image, measured};
+use super::noise::NoiseScale;
+use super::wiener::Wiener;
 use super::*;
-use crate::standardize::StandardizeError;
+use crate::frame::{Frame, PixelFlags, Plane, Shape};
 use proptest::prelude::*;
 
 const SHAPE: Shape = Shape::new(11, 14);
@@ -324,7 +327,7 @@ fn a_frame_of_another_shape_starts_a_new_history_and_one_without_distance_is_ref
     history.push(&of(Shape::new(2, 3), 5.0), &mut out).unwrap();
     history.push(&of(Shape::new(3, 2), 1.0), &mut out).unwrap();
     assert_eq!((out.shape(), out.values()), (Shape::new(3, 2), &[1.0; 6][..]));
-    assert_eq!(history.push(&Frame::new(Shape::new(3, 2)), &mut out), Err(StandardizeError::DistanceMissing));
+    assert_eq!(history.push(&Frame::new(Shape::new(3, 2)), &mut out), Err(DenoiseError::DistanceMissing));
 }
 
 #[test]

@@ -11,8 +11,8 @@
 //!
 //! With `σ_d² = k/a²`, the weights are `a²/k`, and `n² = k N / Σa²`.
 
-use super::Image;
-use crate::plane::bytes;
+use super::image::Image;
+use crate::memory::bytes;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 2;

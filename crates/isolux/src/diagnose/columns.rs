@@ -3,8 +3,9 @@
 use super::sample::Observed;
 use super::untold::{Outcome, Untold};
 use super::{MINIMUM_DISTANCE_RATIO, MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS, SAME_TIME_RATIO};
-use crate::regression::{Coefficient, Intercepts, Loss, Regression, RegressionError, RegressionFit, Row};
-use crate::statistics::quantile;
+use crate::numerics::regression::{Coefficient, Intercepts, Regression, RegressionError, RegressionFit, Row};
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::quantile;
 
 pub(super) const TIME: &str = "integration time";
 pub(super) const DISTANCE: &str = "distance";

@@ -21,22 +21,22 @@ pub struct Diagnosis {
     /// What follows, most important first. Empty when nothing can be told.
     pub findings: Vec<Finding>,
     /// Integration time.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub time: Outcome<Effect>,
     /// Distance.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub distance: Outcome<Effect>,
     /// Place in the image: the coefficient of r².
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub radius: Outcome<Effect>,
     /// The vendor amplitude against the amplitude.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub vendor_scaling: Outcome<Scaling>,
     /// The amplitude against eq. 1 of the phase samples.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub phase_samples: Outcome<Scaling>,
     /// The same pixels at several times.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub still_pixels: Outcome<StillPixels>,
     /// Pixels of one material.
     pub material: Material,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::regression::Coefficient;
+use crate::numerics::regression::Coefficient;
 
 /// A number with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

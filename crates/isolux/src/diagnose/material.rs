@@ -7,8 +7,8 @@ use super::effect::Estimate;
 use super::sample::Observed;
 use super::scaling::Scaling;
 use super::untold::{Outcome, Untold};
-use crate::regression::Loss;
-use crate::statistics::quantile;
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::quantile;
 
 /// Vendor amplitudes of at most this many different values group by value, others by bins of 5 %.
 const VENDOR_VALUES: usize = 256;
@@ -24,13 +24,13 @@ pub struct MaterialFit {
     /// The target label, where there is one.
     pub label: Option<u8>,
     /// d ln A / d ln t.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub time: Outcome<Estimate>,
     /// d ln A / d ln d.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub distance: Outcome<Estimate>,
     /// d ln A / d r²; not fitted for pixels grouped by vendor amplitude.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub radius: Outcome<Estimate>,
     /// Exponent of d in the nearest, the middle and the farthest third of the pixels.
     pub by_distance: Vec<RangeExponent>,
@@ -62,10 +62,10 @@ pub struct Material {
     pub targets: Vec<MaterialFit>,
     /// Pixels of one vendor amplitude taken for one reflectivity. Least squares: the average over all distances,
     /// also where the relation is no power.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub vendor_reflectivity: Outcome<MaterialFit>,
     /// All pixels taken for one material: no evidence, but what a naive regression would find.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub mixed: Outcome<MaterialFit>,
 }
 

@@ -57,9 +57,7 @@ mod untold;
 mod values;
 mod vendor;
 
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::plane::{Shape, ShapeError};
+use crate::frame::{Frame, IntegrationTime, PixelFlags, Shape, ShapeError};
 
 pub use diagnosis::Diagnosis;
 pub use effect::{Effect, Estimate, Evidence, State};
@@ -76,7 +74,7 @@ use sample::{Observed, Sample};
 use values::ValueMeter;
 
 /// Integration times less than this factor apart count as one: cameras report them with jitter.
-const SAME_TIME_RATIO: f64 = 1.01;
+const SAME_TIME_RATIO: f64 = IntegrationTime::SAME_RATIO;
 /// Factor that distances (5 to 95 % quantile) must span for an exponent: 1.2 makes d² differ by 44 %.
 const MINIMUM_DISTANCE_RATIO: f64 = 1.2;
 /// Rows below which a regression is no statement.
@@ -214,7 +212,8 @@ fn radius2(shape: Shape, principal_point: Option<[f64; 2]>) -> Vec<f32> {
     let [cx, cy] = principal_point.unwrap_or([(width - 1.0) / 2.0, (height - 1.0) / 2.0]);
     let half_diagonal2 = (height * height + width * width) / 4.0;
     let at = |index: usize| {
-        let (row, column) = ((index / shape.width) as f64, (index % shape.width) as f64);
+        let (row, column) = shape.place(index);
+        let (row, column) = (row as f64, column as f64);
         (((row - cy).powi(2) + (column - cx).powi(2)) / half_diagonal2) as f32
     };
     (0..shape.pixels()).map(at).collect()
@@ -222,18 +221,13 @@ fn radius2(shape: Shape, principal_point: Option<[f64; 2]>) -> Vec<f32> {
 
 /// Number of the image block that a pixel lies in.
 fn block(shape: Shape, index: usize) -> u16 {
-    let (row, column) = (index / shape.width, index % shape.width);
+    let (row, column) = shape.place(index);
     (row * BLOCKS / shape.height * BLOCKS + column * BLOCKS / shape.width) as u16
 }
 
 /// NaN where it is unknown.
 fn time_us(frame: &Frame, index: usize) -> f32 {
-    let time_us = match &frame.integration_time_us {
-        IntegrationTime::Unknown => f32::NAN,
-        IntegrationTime::PerFrame(time_us) => *time_us as f32,
-        IntegrationTime::PerPixel(map) => map.values()[index],
-    };
-    positive(time_us)
+    frame.integration_time_us.at(index).map_or(f32::NAN, |time_us| positive(time_us as f32))
 }
 
 fn distance_m(frame: &Frame, index: usize) -> f32 {
@@ -243,7 +237,7 @@ fn distance_m(frame: &Frame, index: usize) -> f32 {
 /// Eq. 1 of the pixel's phase samples; NaN without them.
 fn demodulated(frame: &Frame, index: usize) -> f32 {
     let bins = frame.phase_samples.as_ref().map(|bins| bins.each_ref().map(|bin| bin.values()[index]));
-    bins.map_or(f32::NAN, |bins| positive(crate::phase::amplitude(bins)))
+    bins.map_or(f32::NAN, |bins| positive(crate::frame::phase::amplitude(bins)))
 }
 
 /// The value where it is a measurement, else NaN.

@@ -3,8 +3,8 @@
 use super::still::{Point, StillPixels};
 use super::untold::{Outcome, Untold};
 use super::{MINIMUM_ROWS, SAME_TIME_RATIO};
-use crate::hash::splitmix64;
-use crate::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
+use crate::numerics::hash::splitmix64;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
 /// Pixels that are followed.
 const PIXELS: usize = 4096;

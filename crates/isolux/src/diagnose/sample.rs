@@ -2,7 +2,7 @@
 
 use std::collections::BinaryHeap;
 
-use crate::hash::splitmix64;
+use crate::numerics::hash::splitmix64;
 
 /// Most pixels that are kept: 60 bytes each.
 const CAPACITY: usize = 1 << 16;

@@ -8,8 +8,8 @@ use super::effect::Estimate;
 use super::material::{RangeExponent, by_distance};
 use super::sample::Observed;
 use super::untold::Outcome;
-use crate::regression::Loss;
-use crate::statistics::median;
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::median;
 
 /// Integration times that are listed, shortest first.
 const TIME_GROUPS: usize = 16;
@@ -20,13 +20,13 @@ const EXACT: f64 = 1e-5;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scaling {
     /// Exponent of t in scaled/raw: −1 takes the integration time out.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub time: Outcome<Estimate>,
     /// Exponent of d in scaled/raw: 2 takes the inverse-square law out.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub distance: Outcome<Estimate>,
     /// The part that depends on the place in the image.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub radial: Outcome<RadialTerm>,
     /// Exponent of the raw amplitude in the scaled one: 1 is linear, 0.5 a square root. `None` where it was taken
     /// to be 1.

@@ -5,8 +5,9 @@ use serde::Serialize;
 use super::effect::{Effect, Estimate, Evidence, State};
 use super::untold::Outcome;
 use super::{MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS};
-use crate::regression::{Intercepts, Loss, Regression, Row};
-use crate::statistics::quantile;
+use crate::numerics::regression::{Intercepts, Regression, Row};
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::quantile;
 
 /// Values above this fraction of the large ones (99.5 %) may be compressed: the exponent comes from below.
 const LINEAR_SHARE: f64 = 0.5;

@@ -1,7 +1,7 @@
 //! The diagnosis on made-up frames whose law is known.
 
 use super::*;
-use crate::plane::Plane;
+use crate::frame::Plane;
 
 /// A frame of amplitudes `law(row, column)`; distances and times are set by the caller.
 fn frame(shape: Shape, law: impl Fn(usize, usize) -> f64) -> Frame {
@@ -19,7 +19,7 @@ fn diagnose(frames: &[Frame]) -> Diagnosis {
 
 /// Uneven, reproducible, 0.5..1.5, the same in every frame.
 fn material(row: usize, column: usize) -> f64 {
-    0.5 + (crate::hash::splitmix64((row * 1000 + column) as u64) >> 11) as f64 / (1u64 << 53) as f64
+    0.5 + (crate::numerics::hash::splitmix64((row * 1000 + column) as u64) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 const SHAPE: Shape = Shape::new(48, 64);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::regression::RegressionError;
+use crate::numerics::regression::RegressionError;
 
 /// A figure, or the reason why this recording does not determine it. In JSON the figure itself, or
 /// `{"unavailable": "time_constant", "because": "…"}`.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::sample::Observed;
-use crate::flags::PixelFlags;
+use crate::frame::PixelFlags;
 
 /// More pixels than this at the largest value are no coincidence where others are spread.
 const PILE_UP_PIXELS: f64 = 8.0;

@@ -12,7 +12,7 @@ pub struct Comparison {
     /// Figures of the standardized amplitude.
     pub after: Evaluation,
     /// Relative noise after / before, dimensionless: 1 where the steps add no noise.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub noise_amplification: Outcome<f64>,
     /// Borders between the strata, where the signal-to-noise ratio is known.
     #[serde(skip)]
@@ -43,10 +43,10 @@ pub struct ComparisonRow {
     /// Where it should go.
     pub better: Better,
     /// Before standardization.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub before: Outcome<f64>,
     /// After it.
-    #[serde(serialize_with = "crate::refusal::serialize")]
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub after: Outcome<f64>,
     /// Share of values behind the figure before, 0..=1.
     pub before_valid_fraction: Option<f64>,

@@ -1,8 +1,6 @@
 //! What the evaluation reads of a frame, and which of its pixels and times count.
 
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::plane::{Plane, Shape, ShapeError};
+use crate::frame::{Frame, IntegrationTime, PixelFlags, Plane, Shape, ShapeError};
 
 /// One frame as the evaluation sees it: raw or standardized values, and what they were taken with.
 ///
@@ -112,12 +110,6 @@ fn known(time_us: f32) -> f32 {
     if time_us > 0.0 && time_us.is_finite() { time_us } else { 0.0 }
 }
 
-/// True when two times count as one: both unknown, or both known and less than a factor `ratio` apart.
-pub(super) fn same_time(first_us: f32, second_us: f32, ratio: f64) -> bool {
-    let (first, second) = (f64::from(first_us), f64::from(second_us));
-    first == second || (first.min(second) > 0.0 && first.max(second) < ratio * first.min(second))
-}
-
 /// Which frame to give to [`Evaluator::set_reference`](super::Evaluator::set_reference): of the frames whose
 /// integration time is nearest to `reference_time_us` (by ratio), the last of the first run of equal times, as
 /// the camera has settled there. Unknown times are `None`. `None` when no time is known or the reference is not
@@ -159,13 +151,6 @@ mod tests {
         assert_eq!(nearest_reference([None, Some(0.0), Some(-1.0), Some(f64::NAN)], 8200.0), None);
         assert_eq!(nearest_reference([Some(5.0)], 0.0), None);
         assert_eq!(nearest_reference([], 8200.0), None);
-    }
-
-    #[test]
-    fn times_are_one_within_the_ratio_and_unknown_is_only_itself() {
-        assert!(same_time(1000.0, 1009.0, 1.01) && same_time(1009.0, 1000.0, 1.01));
-        assert!(!same_time(1000.0, 1011.0, 1.01));
-        assert!(same_time(0.0, 0.0, 1.01) && !same_time(0.0, 1000.0, 1.01));
     }
 
     #[test]

@@ -46,7 +46,7 @@
 //! # Ok::<(), isolux::ShapeError>(())
 //! ```
 
-use crate::plane::{Plane, Shape, ShapeError};
+use crate::frame::{Plane, Shape, ShapeError};
 
 mod comparison;
 mod evaluation;

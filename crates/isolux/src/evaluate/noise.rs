@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::noise::trimmed_deviation;
-use crate::plane::{Plane, Shape};
-use crate::statistics::{Moments, SIGMA_PER_MAD, median, median_absolute_deviation, quantile};
+use crate::frame::{IntegrationTime, Plane, Shape};
+use crate::numerics::differences::trimmed_deviation;
+use crate::numerics::statistics::{Moments, SIGMA_PER_MAD, median, median_absolute_deviation, quantile};
 
 use super::fraction;
-use super::input::{Times, same_time};
+use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
 
 /// Differences that a frame must give for its noise to be estimated: fewer say nothing robust.
@@ -162,7 +162,8 @@ impl NoiseMeter {
         self.scratch.clear();
         for (index, (&now, &before)) in usable.iter().zip(&self.previous).enumerate() {
             let both = !now.is_nan() && !before.is_nan();
-            if both && same_time(times.at(index), previous_times.at(index), self.same_time_ratio) {
+            if both && IntegrationTime::same(times.at(index), previous_times.at(index), self.same_time_ratio)
+            {
                 let (now, before) = (f64::from(now), f64::from(before));
                 self.scratch.push((now / before).ln());
                 self.squares[index] += (now - before) * (now - before);
@@ -179,8 +180,9 @@ impl NoiseMeter {
         for (row, values) in usable.chunks_exact(width.max(1)).enumerate() {
             for (column, triple) in values.windows(3).enumerate() {
                 let index = row * width + column;
-                let one_time = (1..3)
-                    .all(|step| same_time(times.at(index), times.at(index + step), self.same_time_ratio));
+                let one_time = (1..3).all(|step| {
+                    IntegrationTime::same(times.at(index), times.at(index + step), self.same_time_ratio)
+                });
                 let [left, centre, right] = [0, 1, 2].map(|step| f64::from(triple[step]).ln());
                 let second_difference = left - 2.0 * centre + right;
                 if one_time && second_difference.is_finite() {

@@ -90,7 +90,7 @@ mod tests {
     fn a_reason_is_readable_by_program_and_by_person() {
         #[derive(Serialize)]
         struct Holder {
-            #[serde(serialize_with = "crate::refusal::serialize")]
+            #[serde(serialize_with = "crate::outcome_json::serialize")]
             slope: Outcome<f64>,
         }
         let reason = Unavailable::DistanceSpanTooSmall { found: 1.05, minimum: 1.2 };

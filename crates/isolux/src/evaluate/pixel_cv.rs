@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::plane::Plane;
-use crate::statistics::{median, quantile};
+use crate::frame::Plane;
+use crate::numerics::statistics::{median, quantile};
 
 use super::fraction;
 use super::input::Times;

@@ -2,10 +2,10 @@
 
 use super::histogram::{HistogramDistance, HistogramMeter};
 use super::image_cv::{ImageCv, ImageCvMeter};
-use super::input::same_time;
 use super::otsu::{OtsuMeter, OtsuShift, threshold_ln};
 use super::outcome::{Outcome, Unavailable};
 use super::threshold::{IouMeter, ThresholdIou};
+use crate::frame::IntegrationTime;
 
 /// The reference frame and what its comparison with the others has given so far.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ impl ReferenceComparison {
     /// Compares a frame; NaN = unusable.
     pub(super) fn push(&mut self, usable: &[f32], time_us: f32, same_time_ratio: f64) {
         self.image_cv.push(&self.values, usable, time_us, same_time_ratio);
-        if same_time(time_us, self.time_us, same_time_ratio) {
+        if IntegrationTime::same(time_us, self.time_us, same_time_ratio) {
             return;
         }
         if let Some(threshold) = self.threshold {

@@ -1,8 +1,9 @@
 //! Frames of one integration time, one after the other, form a run; runs are compared, not frames.
 
-use crate::statistics::Moments;
+use crate::frame::IntegrationTime;
+use crate::numerics::statistics::Moments;
 
-use super::input::{Times, same_time};
+use super::input::Times;
 use super::outcome::Unavailable;
 
 /// The runs of one quantity (a pixel, or a figure of the whole image): averaged within, moments between.
@@ -25,10 +26,10 @@ impl Runs {
     pub(super) fn push(&mut self, value: f64, time_us: f32, same_time_ratio: f64) {
         if self.frames == 0 {
             (self.time_us, self.first_time_us) = (time_us, time_us);
-        } else if !same_time(time_us, self.time_us, same_time_ratio) {
+        } else if !IntegrationTime::same(time_us, self.time_us, same_time_ratio) {
             self.closed.push(self.sum / f64::from(self.frames));
             (self.time_us, self.frames, self.sum) = (time_us, 0, 0.0);
-            self.varies |= !same_time(time_us, self.first_time_us, same_time_ratio);
+            self.varies |= !IntegrationTime::same(time_us, self.first_time_us, same_time_ratio);
         }
         self.frames = self.frames.saturating_add(1);
         self.observations = self.observations.saturating_add(1);
@@ -92,7 +93,7 @@ impl TimesSeen {
         if self.longest_us == 0.0 {
             return Err(Unavailable::TimeUnknown);
         }
-        if same_time(self.shortest_us, self.longest_us, same_time_ratio) {
+        if IntegrationTime::same(self.shortest_us, self.longest_us, same_time_ratio) {
             return Err(Unavailable::TimeConstant);
         }
         Ok(())

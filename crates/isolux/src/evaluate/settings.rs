@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::frame::IntegrationTime;
+
 /// Most pixels that the slope's sample may hold: its pairs take 8 bytes each, 67 MB for 4096 pixels.
 const LARGEST_SAMPLE: usize = 4096;
 
@@ -24,7 +26,7 @@ pub struct EvaluationSettings {
 impl Default for EvaluationSettings {
     fn default() -> Self {
         Self {
-            same_time_ratio: 1.01,
+            same_time_ratio: IntegrationTime::SAME_RATIO,
             slope_sample_pixels: 2048,
             minimum_distance_ratio: 1.2,
             minimum_pair_distance_ratio: 1.05,

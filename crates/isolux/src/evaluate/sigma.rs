@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::flags::PixelFlags;
-use crate::plane::Plane;
+use crate::frame::{IntegrationTime, PixelFlags, Plane};
 
 use super::fraction;
-use super::input::{Times, same_time};
+use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
 
 /// Predicted standard deviations beside the errors of the values.
@@ -150,7 +149,7 @@ impl CoverageMeter {
             if value.is_nan() || limited || !(sigma > 0.0 && sigma.is_finite()) {
                 continue;
             }
-            if !same_time(time_us, pixel.time_us, ratio) {
+            if !IntegrationTime::same(time_us, pixel.time_us, ratio) {
                 *pixel = Pixel { time_us, within: pixel.within, errors: pixel.errors, ..Pixel::default() };
             }
             if pixel.frames > 0 {
@@ -198,13 +197,13 @@ impl CoverageMeter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Shape;
+    use crate::frame::Shape;
 
     /// Sums of twelve uniforms: variance 1, nearly normal.
     fn normal(state: &mut u64) -> f64 {
         let mut uniform = || {
             *state = state.wrapping_add(1);
-            (crate::hash::splitmix64(*state) >> 11) as f64 / (1u64 << 53) as f64
+            (crate::numerics::hash::splitmix64(*state) >> 11) as f64 / (1u64 << 53) as f64
         };
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }

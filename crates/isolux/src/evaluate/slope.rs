@@ -4,8 +4,9 @@ use std::collections::BinaryHeap;
 
 use serde::Serialize;
 
-use crate::hash::splitmix64;
-use crate::statistics::{quantile, theil_sen};
+use crate::frame::IntegrationTime;
+use crate::numerics::hash::splitmix64;
+use crate::numerics::statistics::{quantile, theil_sen};
 
 use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
@@ -169,7 +170,7 @@ impl SlopeSample {
         for pixel in pixels {
             let joins = group_start.is_some_and(|start| {
                 start.label == pixel.label
-                    && super::input::same_time(start.time_us, pixel.time_us, same_time_ratio)
+                    && IntegrationTime::same(start.time_us, pixel.time_us, same_time_ratio)
             });
             let point = (pixel.ln_distance, pixel.ln_value);
             match groups.last_mut() {

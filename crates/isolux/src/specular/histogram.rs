@@ -4,7 +4,8 @@
 //! are settled here: 256 bins on [0, min(max, 4·P99)], smoothed by a 3-bin box, and a threshold that grows with
 //! the image.
 
-use crate::quantile::PositiveQuantiles;
+use super::maximum::maximum;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// Bins of the histogram.
 const BINS: usize = 256;
@@ -36,7 +37,7 @@ impl HistogramRule {
     /// bin do not make it qualify.
     pub(super) fn cutoff(&self, values: &[f32], quantiles: &mut PositiveQuantiles) -> Option<f32> {
         let ([lowest_cutoff, p99], count) = quantiles.at(values, [LOWEST_CUTOFF_QUANTILE, 0.99])?;
-        let end = super::maximum(values).min(4.0 * p99);
+        let end = maximum(values).min(4.0 * p99);
         let per_bin = f64::from(end) / BINS as f64;
         let bins_per_dn = (1.0 / per_bin) as f32;
         let bins = count_bins(values, end, bins_per_dn);

@@ -4,9 +4,9 @@
 //! slope 1 at c, increasing, and never above M. What is brighter stays brighter, so that the shape of a highlight
 //! remains to be seen.
 
-use super::HistogramRule;
-use crate::flags::PixelFlags;
-use crate::quantile::PositiveQuantiles;
+use super::histogram::HistogramRule;
+use crate::frame::PixelFlags;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// M − c over c: room for the highlights above the cutoff.
 const ROOM: f64 = 0.25;

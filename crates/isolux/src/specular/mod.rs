@@ -1,20 +1,20 @@
 //! Specular highlights (section 2.3 of the paper): find a cutoff, limit what lies above it, flag it.
 
+mod deviations;
 mod histogram;
 mod knee;
+mod maximum;
 mod notation;
 mod percent;
-mod sigma;
 
+pub use deviations::SigmaRule;
 pub use histogram::HistogramRule;
 pub use knee::KneeRule;
 pub use notation::RuleError;
 pub use percent::PercentRule;
-pub use sigma::SigmaRule;
 
-use crate::flags::PixelFlags;
-use crate::plane::Plane;
-use crate::quantile::PositiveQuantiles;
+use crate::frame::{PixelFlags, Plane};
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// How the cutoff is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,15 +80,4 @@ fn clip(values: &mut [f32], flags: &mut [PixelFlags], cutoff: f32) {
         *value = if above { cutoff } else { *value };
         *flags |= PixelFlags::from_bits_retain(u16::from(above) * PixelFlags::SPECULAR.bits());
     }
-}
-
-/// Largest positive finite value, or 0. In lanes, so that the loop vectorizes.
-fn maximum(values: &[f32]) -> f32 {
-    let mut lanes = [0.0f32; 16];
-    for chunk in values.chunks(lanes.len()) {
-        for (largest, &value) in lanes.iter_mut().zip(chunk) {
-            *largest = if value > *largest && value < f32::INFINITY { value } else { *largest };
-        }
-    }
-    lanes.into_iter().fold(0.0, f32::max)
 }

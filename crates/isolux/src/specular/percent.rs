@@ -1,7 +1,8 @@
 //! `percent`: the cutoff is a fraction of the maximum, or a quantile. The text of the paper says 90 % of the
 //! maximum, the caption of its figure 13 reads as the upper 10 % of the pixels: both are offered.
 
-use crate::quantile::PositiveQuantiles;
+use super::maximum::maximum;
+use crate::numerics::quantile::PositiveQuantiles;
 
 /// Parameters of the percent rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +30,7 @@ impl PercentRule {
     pub(super) fn cutoff(&self, values: &[f32], quantiles: &mut PositiveQuantiles) -> Option<f32> {
         match *self {
             Self::OfMaximum(fraction) => {
-                let maximum = super::maximum(values);
+                let maximum = maximum(values);
                 (maximum > 0.0).then_some((fraction * f64::from(maximum)) as f32)
             }
             Self::Quantile(fraction) => quantiles.at(values, [fraction]).map(|([value], _)| value),

@@ -14,8 +14,8 @@ use super::steps::sigma::Predictor;
 use super::steps::time::TimeGain;
 use super::steps::{angle, profile, specular, time};
 use super::workspace::Workspace;
-use crate::flags::PixelFlags;
 use crate::frame::Frame;
+use crate::frame::PixelFlags;
 use crate::terms::DistanceLaw;
 
 /// What a step that is left out gives the loop to read, from the cache.

@@ -2,7 +2,8 @@
 
 use crate::advice::Advice;
 use crate::choice::TimeStep;
-use crate::plane::{Shape, ShapeError};
+use crate::denoise::DenoiseError;
+use crate::frame::{Shape, ShapeError};
 
 /// Why a frame cannot be standardized.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,6 +47,15 @@ pub enum StandardizeError {
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
+}
+
+impl From<DenoiseError> for StandardizeError {
+    fn from(error: DenoiseError) -> Self {
+        match error {
+            DenoiseError::Shape(error) => Self::Shape(error),
+            DenoiseError::DistanceMissing => Self::DistanceMissing,
+        }
+    }
 }
 
 impl StandardizeError {

@@ -2,9 +2,9 @@
 
 use super::error::StandardizeError;
 use super::steps::response::{Corrected, Repaired, SaturationCorrection};
-use crate::flags::PixelFlags;
+use crate::frame::PixelFlags;
 use crate::frame::{Channels, Frame};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Plane, Shape};
 use crate::terms::response::Response;
 
 /// Undoes each pixel's compression by its measured fill, as the response step does: what is fitted after it (a law over

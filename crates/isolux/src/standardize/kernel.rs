@@ -1,6 +1,6 @@
 //! The point-wise loop: one pass over amplitude and distance, written so that the compiler vectorizes it.
 
-use crate::flags::PixelFlags;
+use crate::frame::PixelFlags;
 use crate::terms::DistanceGain;
 
 /// Pixels per call of the loop: a few planes of this many f32 stay in the first-level cache.

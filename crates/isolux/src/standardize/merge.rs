@@ -10,9 +10,10 @@
 use super::standardized::{FrameSummary, Standardized};
 use super::standardizer::Standardizer;
 use super::steps::specular;
-use crate::flags::PixelFlags;
-use crate::plane::{Shape, ShapeError, bytes};
-use crate::quantile::PositiveQuantiles;
+use crate::frame::PixelFlags;
+use crate::frame::{Shape, ShapeError};
+use crate::memory::bytes;
+use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
 
 /// Standard deviations of a normal law that one chance in a thousand is beyond.
@@ -176,7 +177,7 @@ fn mean_variance(sigma: &[f32], shape: Shape, out: &mut [f32]) {
         if sigma[index].is_nan() {
             continue;
         }
-        let (row, column) = (index / width, index % width);
+        let (row, column) = shape.place(index);
         let (mut sum, mut count) = (0.0, 0.0);
         for row in row.saturating_sub(1)..(row + 2).min(height) {
             for sigma in &sigma[row * width + column.saturating_sub(1)..row * width + (column + 2).min(width)]
@@ -193,7 +194,7 @@ fn mean_variance(sigma: &[f32], shape: Shape, out: &mut [f32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Plane;
+    use crate::frame::Plane;
 
     /// A frame of one row: value, σ and flags of each pixel.
     fn frame(pixels: &[(f32, f32, PixelFlags)]) -> Standardized {

@@ -1,6 +1,6 @@
 //! What the frames before a frame contribute to it.
 
-use crate::plane::{Plane, Shape, ShapeError};
+use crate::frame::{Plane, Shape, ShapeError};
 
 /// Made by [`Stream::prepare`](super::Stream::prepare) in the order of the frames, taken by
 /// [`Standardizer::apply`](super::Standardizer::apply) in any order and thread. The default has no frames before it.

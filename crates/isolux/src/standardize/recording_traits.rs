@@ -1,8 +1,8 @@
 //! What a plan must know of the recording that it is for.
 
 use crate::frame::Channels;
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
+use crate::frame::Intrinsics;
+use crate::frame::Shape;
 
 /// Facts about a recording. They are no choice: the recording has them or it has not.
 #[derive(Clone, Copy, Debug, PartialEq)]

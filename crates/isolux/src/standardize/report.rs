@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::advice::{Advice, RecordingKind};
 use crate::choice::{DistanceStep, TimeStep};
-use crate::plane::Shape;
+use crate::frame::Shape;
 
 /// One step of the chain, as the output's record tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! A standardized frame, and what happened to it.
 
 use super::kernel::{BLOCK, TALLIES, tally};
-use crate::flags::PixelFlags;
-use crate::plane::{Plane, Shape};
+use crate::frame::PixelFlags;
+use crate::frame::{Plane, Shape};
 
 /// A standardized frame; reuse one for a whole recording.
 #[derive(Clone, Debug, PartialEq)]

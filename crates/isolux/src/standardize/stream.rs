@@ -7,7 +7,7 @@ use super::standardizer::Standardizer;
 use super::workspace::Workspace;
 use crate::denoise::TemporalMean;
 use crate::frame::Frame;
-use crate::plane::Shape;
+use crate::frame::Shape;
 
 /// The one stateful entry to standardizing: it owns the chain, what must be remembered of earlier frames, working
 /// memory and the last result.

@@ -2,9 +2,9 @@
 
 use super::steps::response::Corrected;
 use crate::denoise::Denoiser;
-use crate::normals::Incidence;
-use crate::plane::bytes;
-use crate::quantile::PositiveQuantiles;
+use crate::memory::bytes;
+use crate::numerics::quantile::PositiveQuantiles;
+use crate::surface::Incidence;
 
 /// Working memory of [`Standardizer::apply`](super::Standardizer::apply). Empty until it is used; reuse one for each
 /// thread: it allocates only when the shape of the frames changes.

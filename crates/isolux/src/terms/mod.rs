@@ -12,7 +12,6 @@ pub mod response;
 pub mod spline;
 pub mod square;
 
-pub(crate) mod basis;
 mod distance_law;
 mod polynomial;
 mod table;

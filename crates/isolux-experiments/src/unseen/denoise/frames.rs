@@ -1,6 +1,6 @@
 //! Frames at a wanted signal-to-noise ratio, scaled by d² with each rule.
 
-use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, StandardizeError, TimeStep};
 use isolux::{Channels, Choice, DenoiseRule, Plane, Standardized, Standardizer};
 use isolux_camera::scene::object::Object;
 use isolux_camera::scene::run::Run;
@@ -86,7 +86,7 @@ impl Scaled {
         for SimulatedFrame { frame, .. } in frames {
             match &mut history {
                 Some(history) => {
-                    history.push(frame, &mut smoothed)?;
+                    history.push(frame, &mut smoothed).map_err(StandardizeError::from)?;
                     standardizer.apply_at(frame, &smoothed, &mut out)?;
                 }
                 None => {

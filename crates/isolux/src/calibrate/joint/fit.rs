@@ -4,7 +4,7 @@ use super::determine::{Factor, Finding, Refusal, findings};
 use super::problem::Problem;
 use super::robust::Robust;
 use super::{AngleModel, JointModel, LAW_CURVATURE};
-use crate::terms::basis::Basis;
+use crate::numerics::bspline::Basis;
 use crate::terms::profile::{Places, Surface};
 use crate::terms::spline::Harmonic;
 

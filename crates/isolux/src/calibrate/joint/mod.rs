@@ -32,9 +32,6 @@ pub const LAW_CURVATURE: f64 = 1.0;
 /// Standard deviation of the curvature of ln v beside r² and r⁴, per squared half diagonal.
 pub const PROFILE_CURVATURE: f64 = 0.5;
 
-/// Residuals beyond this many σ have no weight (Tukey's biweight).
-pub(crate) const CUTOFF: f64 = 4.685;
-
 /// One amplitude of one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {

@@ -4,8 +4,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::JointError;
 use super::problem::{Normal, Problem};
-use crate::regression::Loss;
-use crate::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 /// Iterations with Huber's weights, which have one solution, before Tukey's.
 const START_ITERATIONS: usize = 6;

@@ -1,7 +1,7 @@
 //! Known truths (methods, section 4): what each kind of recording determines, and how well.
 
 use super::*;
-use crate::plane::Shape;
+use crate::frame::Shape;
 use crate::terms::profile::Places;
 
 const NOISE: f64 = 0.02;

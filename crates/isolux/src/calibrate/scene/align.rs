@@ -6,8 +6,8 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::rigid::Rigid;
 use super::surfaces::{SAME_NORMAL, Surface, Surfaces};
 use super::view::View;
-use crate::regression::Loss;
-use crate::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 const ITERATIONS: usize = 60;
 /// Iterations in which surfaces farther than the expected error are still drawn near.

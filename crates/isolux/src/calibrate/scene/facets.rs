@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
+use crate::frame::{Intrinsics, Shape};
 
 /// Least share of the window's pixels that must be valid.
 const LEAST_SHARE: f64 = 0.6;
@@ -144,7 +143,7 @@ mod tests {
         // Uniform noise of a relative standard deviation of 1 % or, in every other row, of 2 %.
         for (number, depth) in (0u64..).zip(&mut depths) {
             let noise = 0.01 * (1 + number / SHAPE.width as u64 % 2) as f64;
-            let share = (crate::hash::splitmix64(number) >> 11) as f64 / (1u64 << 53) as f64;
+            let share = (crate::numerics::hash::splitmix64(number) >> 11) as f64 / (1u64 << 53) as f64;
             depth.inverse *= 1.0 + noise * 12f64.sqrt() * (share - 0.5);
             depth.weight = (0.5 * noise).powi(-2);
         }

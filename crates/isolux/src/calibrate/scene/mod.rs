@@ -31,9 +31,7 @@ use nalgebra::Vector3;
 
 use super::runs::{Place, Runs};
 use super::{CalibrateError, CalibrateSettings, ExposureCurve, ExposureSweep};
-use crate::frame::Frame;
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
+use crate::frame::{Frame, Intrinsics, Shape};
 use crate::terms::Source;
 use motion::Path;
 use rigid::Rigid;
@@ -204,7 +202,7 @@ fn observation(
     point_m: &Vector3<f64>,
     normal: &Vector3<f64>,
 ) -> Option<SceneObservation> {
-    let [row, column] = [sighting.pixel as usize / shape.width, sighting.pixel as usize % shape.width];
+    let (row, column) = shape.place(sighting.pixel as usize);
     let ray = Vector3::from(intrinsics.ray(row as f64, column as f64)).normalize();
     let cosine = normal.dot(&(pose.rotation * ray));
     let distance_m = normal.dot(&(point_m - pose.translation)) / cosine;

@@ -201,7 +201,7 @@ impl Path {
                     let reason = self.obstacle();
                     return MotionFinding::Refused(MotionRefusal { aligned, frames: aligned + lost, reason });
                 }
-                let residual = crate::statistics::median(&mut self.scales.clone()).unwrap_or(0.0);
+                let residual = crate::numerics::statistics::median(&mut self.scales.clone()).unwrap_or(0.0);
                 MotionFinding::Estimated { travel: self.travel(), frames_lost: lost, residual }
             }
         }
@@ -212,7 +212,7 @@ impl Path {
         let middle = |pick: &dyn Fn(&Lost) -> Option<f64>| {
             let mut values: Vec<f64> = self.lost.iter().filter_map(pick).collect();
             let count = values.len();
-            crate::statistics::median(&mut values).map(|value| (count, value))
+            crate::numerics::statistics::median(&mut values).map(|value| (count, value))
         };
         let unknown = middle(&|lost| match lost {
             Lost::Unknown { surfaces } => Some(*surfaces as f64),

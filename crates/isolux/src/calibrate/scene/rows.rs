@@ -4,7 +4,7 @@ use super::{MotionFinding, SceneObservations};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::joint::{AngleModel, DistanceModel, JointModel, Observation, TimeModel};
 use crate::calibration::REFERENCE_TIME_US;
-use crate::statistics::median;
+use crate::numerics::statistics::median;
 use crate::terms::profile::Places;
 
 /// Standard deviation that no amplitude is trusted beyond, in ln: surfaces are uneven, normals uncertain.

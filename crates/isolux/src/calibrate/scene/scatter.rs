@@ -1,6 +1,6 @@
 //! How much a quantity scatters, depending on the amplitude: the dimmer, the noisier.
 
-use crate::statistics::median;
+use crate::numerics::statistics::median;
 
 /// Bins per factor of two in amplitude.
 const BINS_PER_OCTAVE: f64 = 2.0;

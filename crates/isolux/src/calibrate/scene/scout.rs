@@ -2,7 +2,7 @@
 
 use super::CameraMotion;
 use crate::frame::{Frame, IntegrationTime};
-use crate::motion::MotionWatch;
+use crate::still_scene::MotionWatch;
 
 /// Goes through a recording before it is measured.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::facets::Facet;
 use super::rigid::Rigid;
 use super::view::View;
-use crate::hash::splitmix64;
+use crate::numerics::hash::splitmix64;
 
 /// Surfaces per frame that are followed from there on, where none are yet.
 const SEEDS_PER_FRAME: usize = 1600;
@@ -110,7 +110,10 @@ impl Surfaces {
         let cell = (((shape.pixels() / SEEDS_PER_FRAME) as f64).sqrt() as usize).max(1);
         let columns = shape.width.div_ceil(cell);
         let mut taken = vec![false; columns * shape.height.div_ceil(cell)];
-        let cell_of = |pixel: usize| pixel / shape.width / cell * columns + pixel % shape.width / cell;
+        let cell_of = |pixel: usize| {
+            let (row, column) = shape.place(pixel);
+            row / cell * columns + column / cell
+        };
         let camera = pose.inverse();
         for (number, surface) in (0u32..).zip(&mut self.surfaces) {
             let Some(pixel) = view.pixel_of(&camera.point(&surface.point_m())) else { continue };

@@ -7,7 +7,7 @@ use crate::calibrate::joint::Factor;
 use crate::calibrate::{ExposureFit, FitReport, FitWarning, Measurements};
 use crate::calibration::{Calibration, Reference};
 use crate::frame::IntegrationTime;
-use crate::hash::splitmix64;
+use crate::numerics::hash::splitmix64;
 use crate::terms::lut::LutAnswer;
 
 const SHAPE: Shape = Shape { height: 66, width: 88 };

@@ -4,11 +4,8 @@ use nalgebra::Vector3;
 
 use super::facets::{self, Depth, Facet};
 use super::scatter::Scatter;
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
-use crate::statistics::{SIGMA_PER_MAD, median, quantile};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, PixelFlags, Shape};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 
 /// A distance that leaves the median of its neighbours by more than this many standard deviations is dropped: a flying
 /// pixel, a wrapped one.
@@ -126,7 +123,7 @@ impl View {
 
     /// True where the surroundings of a pixel have one reflectivity: there, half a pixel does not matter.
     pub(super) fn is_plain(&self, pixel: usize) -> bool {
-        let (row, column) = (pixel / self.shape.width, pixel % self.shape.width);
+        let (row, column) = self.shape.place(pixel);
         let inside = |at: usize, size: usize| at >= PLAIN_RADIUS && at + PLAIN_RADIUS < size;
         if !inside(row, self.shape.height) || !inside(column, self.shape.width) {
             return false;
@@ -157,7 +154,7 @@ fn ln(amplitude: f32) -> f64 {
 fn is_usable(frame: &Frame, index: usize) -> bool {
     let shape = frame.shape();
     let bad = PixelFlags::INVALID | PixelFlags::LOW_SIGNAL;
-    let (row, column) = (index / shape.width, index % shape.width);
+    let (row, column) = shape.place(index);
     let near = |at: usize, size: usize| at.saturating_sub(1)..(at + 2).min(size);
     let saturated = near(row, shape.height).any(|row| {
         near(column, shape.width)
@@ -168,7 +165,7 @@ fn is_usable(frame: &Frame, index: usize) -> bool {
 
 /// Median of the valid values among a pixel and its eight neighbours; NaN where there are none.
 fn middle(values: &[f64], shape: Shape, index: usize) -> f64 {
-    let (row, column) = (index / shape.width, index % shape.width);
+    let (row, column) = shape.place(index);
     let (mut around, mut count) = ([0.0; 9], 0);
     for row in row.saturating_sub(1)..(row + 2).min(shape.height) {
         for column in column.saturating_sub(1)..(column + 2).min(shape.width) {

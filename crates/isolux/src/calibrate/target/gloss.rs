@@ -4,7 +4,8 @@ use super::TargetWindows;
 use super::report::SurfaceUse;
 use super::rows::Rows;
 use crate::calibrate::FitWarning;
-use crate::regression::{Intercepts, Loss, Regression, Row};
+use crate::numerics::regression::{Intercepts, Regression, Row};
+use crate::numerics::robust::Loss;
 
 /// Windows that a material's own exponent needs.
 const LEAST_WINDOWS: usize = 40;

@@ -13,11 +13,8 @@ pub(super) use fit::fit;
 pub use report::{SurfaceUse, TargetReport};
 
 use super::{CalibrateError, CalibrateSettings};
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::geometry::Intrinsics;
-use crate::normals::Incidence;
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, PixelFlags, Plane, Shape};
+use crate::surface::Incidence;
 use patches::{PATCH_PX, Patches};
 
 /// A window's median amplitude must stand this many times above its pixels' scatter: fainter ones are biased.
@@ -174,10 +171,10 @@ impl TargetSweep {
 /// The windows of 5×5 pixels that are measured in an image of labels: each lies inside one label above 0, and none
 /// overlaps another.
 #[must_use]
-pub fn label_windows(target: &Plane<u8>) -> Vec<crate::plane::Window> {
+pub fn label_windows(target: &Plane<u8>) -> Vec<crate::frame::Window> {
     let mut patches = Patches::default();
     let window =
-        |&(top, left): &(usize, usize)| crate::plane::Window { top, left, height: PATCH_PX, width: PATCH_PX };
+        |&(top, left): &(usize, usize)| crate::frame::Window { top, left, height: PATCH_PX, width: PATCH_PX };
     patches.find(target).iter().map(window).collect()
 }
 
@@ -239,9 +236,9 @@ fn measure(frame: &Frame, target: &Plane<u8>, corner: (usize, usize)) -> Option<
 
 /// Median and 1.4826 MAD. NaN are kept out by the caller, but for distances that the recording lacks.
 fn centre_and_scatter(values: &mut [f64]) -> Option<(f64, f64)> {
-    let centre = crate::statistics::median(values)?;
-    let scatter = crate::statistics::median_absolute_deviation(values)?;
-    Some((centre, crate::statistics::SIGMA_PER_MAD * scatter))
+    let centre = crate::numerics::statistics::median(values)?;
+    let scatter = crate::numerics::statistics::median_absolute_deviation(values)?;
+    Some((centre, crate::numerics::statistics::SIGMA_PER_MAD * scatter))
 }
 
 /// Median of the window's cosines; NaN where fewer than half of its pixels have one.
@@ -253,6 +250,6 @@ fn middle_cosine(cosine: impl Fn(usize) -> f32, shape: Shape, corner: (usize, us
         count += 1;
     }
     let enough = count * 2 >= PATCH_PX * PATCH_PX;
-    let median = crate::statistics::median(&mut known[..count]).filter(|_| enough);
+    let median = crate::numerics::statistics::median(&mut known[..count]).filter(|_| enough);
     median.map_or(f32::NAN, |median| median as f32)
 }

@@ -1,6 +1,6 @@
 //! Small windows inside the labels of a target.
 
-use crate::plane::Plane;
+use crate::frame::Plane;
 
 /// Side of a window, pixels.
 pub(super) const PATCH_PX: usize = 5;
@@ -26,7 +26,7 @@ impl Patches {
         self.taken.resize(labels.len(), false);
         self.found.clear();
         for index in (0..labels.len()).filter(|&index| labels[index] > 0) {
-            let (row, column) = (index / width, index % width);
+            let (row, column) = shape.place(index);
             let same = |back: usize| labels[index - back] == labels[index];
             let grows = row > 0 && column > 0 && same(1) && same(width) && same(width + 1);
             self.squares[index] = if grows {
@@ -56,7 +56,7 @@ impl Patches {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Shape;
+    use crate::frame::Shape;
 
     #[test]
     fn windows_lie_in_one_label_and_clear_of_each_other() {

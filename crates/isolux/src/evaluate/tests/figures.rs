@@ -39,7 +39,7 @@ fn quantized(frames: usize, drift_dn: f64) -> Vec<Frame> {
 
 /// Standard deviation over mean of all values of a frame.
 fn relative_deviation(frame: &Frame) -> f64 {
-    let mut moments = crate::statistics::Moments::default();
+    let mut moments = crate::numerics::statistics::Moments::default();
     frame.amplitude.values().iter().for_each(|value| moments.push(f64::from(*value)));
     moments.coefficient_of_variation().unwrap()
 }

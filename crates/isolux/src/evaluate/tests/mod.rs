@@ -5,9 +5,7 @@ mod figures;
 mod laws;
 mod numpy;
 
-use crate::flags::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Frame, IntegrationTime, PixelFlags, Plane, Shape};
 
 use super::*;
 

@@ -1,9 +1,9 @@
 //! The step that takes the angle of incidence out: a factor on the multipliers of a block.
 
 use crate::choice::AngleStep;
-use crate::flags::PixelFlags;
 use crate::frame::Channels;
-use crate::geometry::Intrinsics;
+use crate::frame::Intrinsics;
+use crate::frame::PixelFlags;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::angle::{self, LAMBERT, LEAST_COSINE};

@@ -3,7 +3,7 @@
 use crate::choice::DenoiseStep;
 use crate::denoise::{DenoiseRule, Denoiser};
 use crate::frame::Frame;
-use crate::plane::Plane;
+use crate::frame::Plane;
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
 use crate::standardize::prepared::Prepared;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::advice::RecordingKind;
 use crate::choice::{Method, ProfileStep};
-use crate::flags::PixelFlags;
-use crate::plane::Shape;
+use crate::frame::PixelFlags;
+use crate::frame::Shape;
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};

@@ -10,8 +10,8 @@
 use crate::calibration::Calibration;
 use crate::choice::SigmaStep;
 use crate::denoise::Denoiser;
+use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::frame::{Channels, Frame, IntegrationTime};
-use crate::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::standardize::kernel::BLOCK;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};

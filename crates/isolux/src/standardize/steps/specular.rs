@@ -1,7 +1,7 @@
 //! The step that limits highlights.
 
 use crate::choice::SpecularStep;
-use crate::quantile::PositiveQuantiles;
+use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::{HistogramRule, SpecularRule};
 use crate::standardize::planner::Planner;
 use crate::standardize::standardized::Standardized;

@@ -6,7 +6,7 @@ use super::response::{self, PlannedResponse, SaturationCorrection};
 use crate::advice::RecordingKind;
 use crate::calibration::REFERENCE_TIME_US;
 use crate::choice::{Method, TimeStep};
-use crate::flags::PixelFlags;
+use crate::frame::PixelFlags;
 use crate::frame::{Channels, Frame, IntegrationTime};
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
@@ -212,7 +212,7 @@ impl Memo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{Plane, Shape};
+    use crate::frame::{Plane, Shape};
 
     #[test]
     fn a_map_of_times_gives_each_pixel_its_multiplier() {

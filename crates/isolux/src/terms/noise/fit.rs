@@ -1,8 +1,7 @@
 //! Fitting the variances: weighted least squares over groups of like pixels, no coefficient below 0.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::{AmplitudeNoise, IntensityNoise, Noise};
+use crate::numerics::nnls;
 use crate::terms::{FitQuality, Source, root_mean_square};
 
 /// The noise of pixels of like amplitude, intensity and integration time.
@@ -83,7 +82,8 @@ fn solve<const N: usize>(
     let rows: Vec<[f64; N]> = cells.iter().map(row).collect();
     let mut scale = [0.0f64; N];
     rows.iter().for_each(|row| scale.iter_mut().zip(row).for_each(|(s, x)| *s = s.max(*x)));
-    let mut predicted: Vec<f64> = cells.iter().map(|cell| cell.variance_dn2).collect();
+    let variances_dn2: Vec<f64> = cells.iter().map(|cell| cell.variance_dn2).collect();
+    let mut predicted = variances_dn2.clone();
     let mut found = None;
     for _ in 0..ROUNDS {
         let weight = |(cell, predicted): (&NoiseCell, &f64)| {
@@ -91,7 +91,7 @@ fn solve<const N: usize>(
             1.0 / (predicted * predicted * (2.0 / cell.differences + model_error * model_error))
         };
         let weights: Vec<f64> = cells.iter().zip(&predicted).map(weight).collect();
-        let coefficients = not_negative(cells, &rows, &weights, scale)?;
+        let coefficients = nnls::by_subsets(&rows, &variances_dn2, &weights, scale)?;
         for (predicted, row) in predicted.iter_mut().zip(&rows) {
             *predicted = row.iter().zip(&coefficients).map(|(x, c)| x * c).sum();
         }
@@ -101,53 +101,6 @@ fn solve<const N: usize>(
         }
     }
     found
-}
-
-/// The best of all least-squares solutions over some of the columns that has no negative coefficient.
-fn not_negative<const N: usize>(
-    cells: &[NoiseCell],
-    rows: &[[f64; N]],
-    weights: &[f64],
-    scale: [f64; N],
-) -> Option<[f64; N]> {
-    let mut best: Option<(f64, [f64; N])> = None;
-    for subset in 1u32..1 << N {
-        let columns: Vec<usize> = (0..N).filter(|column| subset >> column & 1 == 1).collect();
-        if columns.iter().any(|&column| scale[column] <= 0.0) {
-            continue;
-        }
-        let Some(solved) = least_squares(cells, rows, weights, scale, &columns) else { continue };
-        let error = |((cell, row), weight): ((&NoiseCell, &[f64; N]), &f64)| {
-            let predicted: f64 = row.iter().zip(&solved).map(|(x, c)| x * c).sum();
-            weight * (cell.variance_dn2 - predicted).powi(2)
-        };
-        let error: f64 = cells.iter().zip(rows).zip(weights).map(error).sum();
-        if solved.iter().all(|c| *c >= 0.0 && c.is_finite()) && best.is_none_or(|(least, _)| error < least) {
-            best = Some((error, solved));
-        }
-    }
-    best.map(|(_, solved)| solved)
-}
-
-fn least_squares<const N: usize>(
-    cells: &[NoiseCell],
-    rows: &[[f64; N]],
-    weights: &[f64],
-    scale: [f64; N],
-    columns: &[usize],
-) -> Option<[f64; N]> {
-    let root = |index: usize| weights[index].sqrt();
-    let design = DMatrix::from_fn(cells.len(), columns.len(), |row, column| {
-        root(row) * rows[row][columns[column]] / scale[columns[column]]
-    });
-    let target = DVector::from_fn(cells.len(), |row, _| root(row) * cells[row].variance_dn2);
-    if cells.len() < columns.len() {
-        return None;
-    }
-    let solution = design.svd(true, true).solve(&target, f64::EPSILON).ok()?;
-    let mut solved = [0.0; N];
-    columns.iter().zip(solution.iter()).for_each(|(&column, c)| solved[column] = c / scale[column]);
-    Some(solved)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ pub use places::Places;
 pub(crate) use surface::{RADIAL, Surface};
 
 use super::{FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require};
-use crate::plane::{Plane, Shape};
+use crate::frame::{Plane, Shape};
 
 /// Illumination profile of one camera at one image format.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

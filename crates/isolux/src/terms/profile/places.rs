@@ -1,7 +1,6 @@
 //! Image coordinates that the illumination profile is a function of.
 
-use crate::geometry::Intrinsics;
-use crate::plane::Shape;
+use crate::frame::{Intrinsics, Shape};
 
 /// Where pixels lie: x to the right and y down from the principal point, in units of the image's half diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Places;
-use crate::terms::basis::Basis;
+use crate::numerics::bspline::Basis;
 
 /// B-splines along a row and along a column (methods, section 4).
 pub(crate) const TENSOR: [usize; 2] = [8, 6];
@@ -67,7 +67,7 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Shape;
+    use crate::frame::Shape;
     use nalgebra::DVector;
 
     #[test]

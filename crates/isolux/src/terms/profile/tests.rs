@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::Intrinsics;
+use crate::frame::Intrinsics;
 
 const SHAPE: Shape = Shape::new(48, 64);
 

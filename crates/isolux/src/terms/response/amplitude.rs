@@ -10,7 +10,9 @@ use serde::{Deserialize, Serialize};
 use super::ResponseError;
 use super::evidence::AmplitudeStack;
 use super::still::{LEAST_SAMPLES, StillScene};
-use crate::statistics::{SIGMA_PER_MAD, median, quantile};
+use crate::numerics::nnls;
+use crate::numerics::robust::{biweight, tukey_share};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
 
 /// Linear amplitude by amplitude.
@@ -42,8 +44,6 @@ const ROUNDS: usize = 4;
 /// What a curve of straight pieces leaves: most samples are linear and have less, and must not make outliers of those
 /// that are compressed.
 const LEAST_SIGMA: f64 = 0.005;
-/// Tukey's biweight at 95 % efficiency.
-const TUKEY: f64 = 4.685;
 
 /// A sample: ln A, ln (A/t), weight.
 type Row = [f64; 3];
@@ -199,8 +199,7 @@ fn robust<'a>(hinges: &[f64], pixels: impl Iterator<Item = &'a Vec<Row>>) -> Opt
         let sigma = (SIGMA_PER_MAD * median(&mut sizes)?).max(LEAST_SIGMA);
         for ((weights, rows), residuals) in weights.iter_mut().zip(&pixels).zip(standardized) {
             for ((weight, row), residual) in weights.iter_mut().zip(rows.iter()).zip(residuals) {
-                let share = (residual / (TUKEY * sigma)).powi(2);
-                *weight = if share < 1.0 { row[2] * (1.0 - share).powi(2) } else { 0.0 };
+                *weight = row[2] * biweight(tukey_share(residual, sigma));
             }
         }
     }
@@ -239,44 +238,14 @@ fn least_squares(hinges: &[f64], pixels: &[&Vec<Row>], weights: &[Vec<f64>]) -> 
         matrix[i][i - 1] -= penalty;
         matrix[i - 1][i] -= penalty;
     }
-    non_negative(&matrix, &right)
-}
-
-/// Minimum of `½ xᵀMx − bᵀx` over x ≥ 0, M positive definite: one coordinate after the other, which converges for every
-/// convex quadratic with bounds.
-fn non_negative(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
-    const SWEEPS: usize = 20_000;
-    let mut x = vec![0.0; right.len()];
-    for _ in 0..SWEEPS {
-        let mut moved = 0.0f64;
-        for i in 0..x.len() {
-            if matrix[i][i] > 0.0 {
-                let rest: f64 =
-                    matrix[i].iter().zip(&x).map(|(m, x)| m * x).sum::<f64>() - matrix[i][i] * x[i];
-                let found = ((right[i] - rest) / matrix[i][i]).max(0.0);
-                moved = moved.max((found - x[i]).abs());
-                x[i] = found;
-            }
-        }
-        if moved < 1e-9 {
-            break;
-        }
-    }
-    x
+    nnls::by_coordinates(&matrix, &right)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Shape;
+    use crate::frame::Shape;
     use crate::terms::response::SoftWell;
-
-    #[test]
-    fn bounded_least_squares_by_hand() {
-        // Unbounded: x = (2, −1); bounded at 0 in the second: x₁ = 3/2.
-        let matrix = vec![vec![2.0, 1.0], vec![1.0, 1.0]];
-        assert_eq!(non_negative(&matrix, &[3.0, 1.0]), [1.5, 0.0]);
-    }
 
     /// Pixels of many brightnesses and one contrast: the fill is a function of the amplitude.
     #[test]

@@ -1,6 +1,6 @@
 //! What a still scene delivered at several integration times: the evidence of all tiers but the scalar one.
 
-use crate::plane::Shape;
+use crate::frame::Shape;
 
 /// Mean amplitudes of every pixel of a still scene, one image per integration time.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +114,7 @@ pub(super) fn plateau(series: impl IntoIterator<Item = Vec<(f64, f64)>>) -> Opti
     // Noise stops anywhere, a clip at the top.
     let top = levels.iter().copied().fold(0.0, f64::max);
     levels.retain(|level| *level > 0.97 * top);
-    (levels.len() >= LEAST_VALUES).then(|| crate::statistics::median(&mut levels)).flatten()
+    (levels.len() >= LEAST_VALUES).then(|| crate::numerics::statistics::median(&mut levels)).flatten()
 }
 
 #[cfg(test)]

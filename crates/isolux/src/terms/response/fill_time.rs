@@ -1,6 +1,7 @@
 //! The fill time of one pixel: least squares over a grid that all pixels share.
 
 use super::well::SoftWell;
+use crate::numerics::robust::{biweight, tukey_share};
 
 /// The amplitude of one pixel at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +39,6 @@ const STEP: f64 = 0.02;
 const COARSE: usize = 12;
 /// The largest τ, in units of the longest time: a fill of a quarter compresses by less than 1e-3 from p = 4 on.
 const LARGEST: f64 = 4.0;
-/// Tukey's biweight at 95 % efficiency.
-const TUKEY: f64 = 4.685;
 
 impl FillTimes {
     /// For `times_us` in increasing order.
@@ -121,8 +120,8 @@ impl FillTimes {
             .iter()
             .zip(residuals)
             .map(|(s, residual)| {
-                let share = s.weight * (residual / (TUKEY * sigma)).powi(2);
-                Sample { weight: if share < 1.0 { s.weight * (1.0 - share).powi(2) } else { 0.0 }, ..*s }
+                let share = s.weight * tukey_share(residual, sigma);
+                Sample { weight: s.weight * biweight(share), ..*s }
             })
             .collect();
         let best = self.best(&reweighted)?;

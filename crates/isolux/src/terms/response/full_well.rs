@@ -6,7 +6,8 @@ use super::evidence::{PixelMeans, PixelSeries, plateau};
 use super::solve::{Model, Series, Solution, solve};
 use super::well::{InverseTable, SoftWell};
 use super::{ResponseError, check_softness};
-use crate::statistics::median;
+use crate::frame::phase::CLIPPED_SHARE;
+use crate::numerics::statistics::median;
 use crate::terms::{FitQuality, ParameterError, require, root_mean_square};
 
 /// Full well, softness and black level of a channel.
@@ -24,8 +25,6 @@ pub struct FullWell {
 impl FullWell {
     /// Slope f′ below which a value is not inverted: its noise would grow by the inverse, here fivefold.
     pub const LEAST_SLOPE: f64 = 0.2;
-    /// Share of the clip level from which on a value counts as clipped (methods, section 2).
-    pub const CLIPPED_SHARE: f64 = 0.985;
     /// Relative standard deviation of W above which the sweep has not determined it.
     const LARGEST_SD: f64 = 0.05;
 
@@ -50,8 +49,7 @@ impl FullWell {
     /// Largest value that is inverted: below the clip, where it is known, and where the slope is large enough, DN.
     pub(super) fn largest_dn(&self, clip_dn: Option<f64>) -> f64 {
         let by_slope = self.full_well_dn * self.shape().kept_at_slope(Self::LEAST_SLOPE);
-        let by_clip =
-            clip_dn.map_or(f64::INFINITY, |clip| Self::CLIPPED_SHARE * (clip - self.black_level_dn));
+        let by_clip = clip_dn.map_or(f64::INFINITY, |clip| CLIPPED_SHARE * (clip - self.black_level_dn));
         self.black_level_dn + by_slope.min(by_clip)
     }
 
@@ -143,8 +141,8 @@ pub(super) fn fit<const R: usize, const Q: usize, C: Channel<R, Q>>(
         values.map(|(t, y)| (t, y - black_level_dn)).collect::<Vec<_>>()
     };
     let clip_dn = plateau(pixels.iter().map(above)).map(|clip| clip + black_level_dn);
-    let usable_dn = clip_dn
-        .map_or(f64::INFINITY, |clip| black_level_dn + FullWell::CLIPPED_SHARE * (clip - black_level_dn));
+    let usable_dn =
+        clip_dn.map_or(f64::INFINITY, |clip| black_level_dn + CLIPPED_SHARE * (clip - black_level_dn));
     let usable = |pixel: &PixelSeries| pixel.iter().filter(|m| !m.unusable).copied().collect::<Vec<_>>();
     let values = pixels.iter().flat_map(|p| channel.largest_values(&usable(p))).map(|(_, y)| y);
     let top = values.filter(|y| *y < usable_dn).fold(f64::NEG_INFINITY, f64::max);

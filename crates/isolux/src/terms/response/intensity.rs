@@ -142,7 +142,7 @@ impl Channel<2, 2> for Dc {
         };
         let contrast = |p: &Point<2>| p.values_dn[1] / (p.values_dn[0] - start.black_level_dn);
         let mut contrasts: Vec<f64> = points.iter().map(contrast).filter(|c| *c > 0.0).collect();
-        let Some(contrast) = crate::statistics::median(&mut contrasts) else { return Vec::new() };
+        let Some(contrast) = crate::numerics::statistics::median(&mut contrasts) else { return Vec::new() };
         vec![Series { points, light: [guess.ln(), contrast.min(1.0).ln()] }]
     }
 

@@ -25,7 +25,6 @@ mod phase_samples;
 mod pixel;
 mod rows;
 mod scalar;
-mod search;
 mod solve;
 mod still;
 mod well;

@@ -7,7 +7,7 @@ use super::evidence::{PixelMeans, PixelSeries};
 use super::full_well::{Channel, Fitted, FullWell, fit};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
-use crate::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::terms::{FitQuality, ParameterError, Source, require};
 
 /// The well of the raw bins: `A_k = black level + W f(x_k)`.

@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::evidence::AmplitudeStack;
 use super::fill_time::{FillTimes, Sample};
-use super::search::minimum;
 use super::still::{LEAST_SAMPLES, StillScene};
 use super::well::SoftWell;
 use super::{ResponseError, check_softness, rows};
-use crate::plane::Shape;
-use crate::statistics::{SIGMA_PER_MAD, median, quantile};
+use crate::frame::Shape;
+use crate::numerics::minimum::minimum;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
 
 /// One well per pixel, of one scene.

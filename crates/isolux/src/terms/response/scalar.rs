@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::search::minimum;
 use super::well::SoftWell;
 use super::{ResponseError, check_softness};
+use crate::numerics::minimum::minimum;
 use crate::terms::lut::{ExposureSample, LutAnswer};
 use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
 

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use super::FullWell;
 use super::well::SoftWell;
-use crate::statistics::{SIGMA_PER_MAD, median};
+use crate::numerics::robust::{biweight, tukey_loss, tukey_share};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median};
 
 /// What one pixel delivered over the times: R values each, and Q numbers of its own that explain them.
 #[derive(Clone, Debug)]
@@ -44,8 +45,6 @@ impl<const R: usize, const Q: usize, F: Fn(&FullWell, &[f64; Q], f64) -> [f64; R
 
 /// Rounds of reweighting; each step of Levenberg and Marquardt is one.
 const ROUNDS: usize = 60;
-/// Tukey's biweight at 95 % efficiency.
-const TUKEY: f64 = 4.685;
 
 /// Well and light that leave the least robust sum of squares; `None` when the points do not determine them.
 pub(super) fn solve<const R: usize, const Q: usize>(
@@ -141,16 +140,7 @@ fn robust_cost<const R: usize, const Q: usize>(
     model: &impl Model<R, Q>,
     sigma: f64,
 ) -> f64 {
-    let loss = |residual: f64| {
-        let share = (residual / (TUKEY * sigma)).powi(2);
-        if share < 1.0 { 1.0 - (1.0 - share).powi(3) } else { 1.0 }
-    };
-    all_residuals(series, well, model).map(loss).sum()
-}
-
-fn weight(residual: f64, sigma: f64) -> f64 {
-    let share = (residual / (TUKEY * sigma)).powi(2);
-    if share < 1.0 { (1.0 - share).powi(2) } else { 0.0 }
+    all_residuals(series, well, model).map(|residual| tukey_loss(residual, sigma)).sum()
 }
 
 /// Normal equations: the shared block, and each pixel's own.
@@ -210,7 +200,7 @@ impl<const Q: usize> Normal<Q> {
                 for i in 0..R {
                     let by_well = Vector3::from_fn(|axis, _| shared[axis][i]);
                     let by_light = SVector::<f64, Q>::from_fn(|q, _| light[q][i]);
-                    let weight = weight(now[i], sigma);
+                    let weight = biweight(tukey_share(now[i], sigma));
                     normal.shared += weight * by_well * by_well.transpose();
                     normal.gradient += weight * now[i] * by_well;
                     own.block += weight * by_light * by_light.transpose();

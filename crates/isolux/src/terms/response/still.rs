@@ -2,7 +2,7 @@
 
 use super::evidence::{AmplitudeStack, rising};
 use super::fill_time::Sample;
-use crate::statistics::median;
+use crate::numerics::statistics::median;
 
 /// Samples of a pixel that a fit needs.
 pub(super) const LEAST_SAMPLES: usize = 4;

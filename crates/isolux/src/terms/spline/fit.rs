@@ -8,8 +8,8 @@
 use super::rows::{Model, Rows, count_positions};
 use super::select::{best, reweighted};
 use super::{Harmonic, Spline};
-use crate::statistics::median;
-use crate::terms::basis::Basis;
+use crate::numerics::bspline::Basis;
+use crate::numerics::statistics::median;
 use crate::terms::cubic::{Decay, Scaling};
 use crate::terms::{FitQuality, root_mean_square};
 

@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 
 pub use fit::{SplineError, SplineUse};
 
-use super::basis::Basis;
 use super::table::DistanceTable;
 use super::{DistanceGain, DistanceLaw, FitQuality, MULTIPLIER_LIMITS, ParameterError, Source, require};
-use crate::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::numerics::bspline::Basis;
 
 /// Smooth law over distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Harmonic;
-use crate::terms::basis::Basis;
+use crate::numerics::bspline::Basis;
 use crate::terms::cubic::Decay;
 
 /// Neighbouring measured distances of unlike times belong to one position when they are closer than this, relative.

@@ -1,8 +1,8 @@
 //! Robust weights, and the choice of curvature weight and harmonic by cross-validation.
 
 use super::rows::{Model, Rows, Solution};
-use crate::regression::Loss;
-use crate::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
+use crate::numerics::robust::Loss;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
 /// Curvature weights tried: 10^(k/2) from 1e-9 to 1e2. The lowest follows a kink from one position to the next, the
 /// highest leaves a power law.

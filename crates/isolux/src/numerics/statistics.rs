@@ -30,6 +30,13 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     quantile(values, 0.5)
 }
 
+/// The median; the upper of the middle two for an even count, so that it is one of the values. Reorders `values`.
+#[must_use]
+pub fn upper_median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
 /// The median absolute deviation from the median, in the unit of `values`, which are overwritten. Times
 /// [`SIGMA_PER_MAD`] it estimates σ.
 #[must_use]
@@ -39,23 +46,9 @@ pub fn median_absolute_deviation(values: &mut [f64]) -> Option<f64> {
     median(values)
 }
 
-/// Mean of (value, weight) pairs, `Σwx / Σw`. Pairs whose weight is not positive and finite do not enter.
-#[must_use]
-pub fn weighted_mean(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
-    let mut weights = 0.0;
-    let mut mean = 0.0;
-    for (value, weight) in pairs {
-        if weight > 0.0 && weight.is_finite() {
-            weights += weight;
-            mean += (value - mean) * (weight / weights);
-        }
-    }
-    (weights > 0.0).then_some(mean)
-}
-
 /// Running mean and variance (Welford 1962): one pass, no cancellation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments {
+pub(crate) struct Moments {
     count: u32,
     mean: f64,
     squares: f64,
@@ -63,7 +56,7 @@ pub struct Moments {
 
 impl Moments {
     /// Takes one more value in.
-    pub fn push(&mut self, value: f64) {
+    pub(crate) fn push(&mut self, value: f64) {
         self.count = self.count.saturating_add(1);
         let step = value - self.mean;
         self.mean += step / f64::from(self.count);
@@ -71,26 +64,22 @@ impl Moments {
     }
 
     /// Number of values.
-    #[must_use]
-    pub fn count(&self) -> u32 {
+    pub(crate) fn count(&self) -> u32 {
         self.count
     }
 
     /// Mean of the values, in their unit.
-    #[must_use]
-    pub fn mean(&self) -> Option<f64> {
+    pub(crate) fn mean(&self) -> Option<f64> {
         (self.count > 0).then_some(self.mean)
     }
 
     /// Population variance (divided by n), in the unit squared.
-    #[must_use]
-    pub fn population_variance(&self) -> Option<f64> {
+    pub(crate) fn population_variance(&self) -> Option<f64> {
         (self.count > 0).then(|| self.squares / f64::from(self.count))
     }
 
     /// Population standard deviation / mean, dimensionless; `None` unless the mean is positive.
-    #[must_use]
-    pub fn coefficient_of_variation(&self) -> Option<f64> {
+    pub(crate) fn coefficient_of_variation(&self) -> Option<f64> {
         let variance = self.population_variance()?;
         (self.mean > 0.0).then(|| variance.sqrt() / self.mean)
     }
@@ -98,7 +87,7 @@ impl Moments {
 
 /// A slope by Theil and Sen, and what it rests on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TheilSen {
+pub(crate) struct TheilSen {
     /// Median slope over all pairs, in units of y per unit of x.
     pub slope: f64,
     /// Lower end of the 95 % confidence interval.
@@ -120,7 +109,7 @@ pub struct TheilSen {
 ///
 /// Time and memory grow with the square of the group size.
 #[must_use]
-pub fn theil_sen<'a>(
+pub(crate) fn theil_sen<'a>(
     groups: impl IntoIterator<Item = &'a [(f64, f64)]>,
     minimum_step: f64,
 ) -> Option<TheilSen> {
@@ -173,15 +162,15 @@ mod tests {
         assert_eq!(quantile(&mut values, 0.5), Some(2.5));
         assert!((quantile(&mut values, 0.95).unwrap() - (3.0 + 0.85 * 7.0)).abs() < 1e-12);
         assert_eq!(quantile(&mut values, 1.0), Some(10.0));
+        assert_eq!(upper_median(&mut values), Some(3.0));
     }
 
     #[test]
     fn what_cannot_be_computed_is_none() {
-        assert_eq!(median(&mut []), None);
+        assert_eq!((median(&mut []), upper_median(&mut [])), (None, None));
         assert_eq!(quantile(&mut [1.0], 1.5), None);
         assert_eq!(quantile(&mut [1.0], f64::NAN), None);
         assert_eq!(median_absolute_deviation(&mut []), None);
-        assert_eq!(weighted_mean([(1.0, 0.0), (2.0, f64::NAN)]), None);
         assert_eq!(Moments::default().coefficient_of_variation(), None);
         assert_eq!(theil_sen([[(1.0, 2.0), (1.0, 3.0)].as_slice()], 0.0), None);
     }
@@ -190,12 +179,6 @@ mod tests {
     fn one_outlier_does_not_move_the_mad() {
         // Median 3, deviations 2 1 0 1 997.
         assert_eq!(median_absolute_deviation(&mut [1.0, 2.0, 3.0, 4.0, 1000.0]), Some(1.0));
-    }
-
-    #[test]
-    fn weights_count_and_bad_ones_do_not() {
-        let pairs = [(1.0, 1.0), (4.0, 2.0), (f64::NAN, 0.0), (9.0, -1.0)];
-        assert!((weighted_mean(pairs).unwrap() - 3.0).abs() < 1e-15);
     }
 
     #[test]

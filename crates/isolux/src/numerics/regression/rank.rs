@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::{Centred, RegressionError};
+use super::centred::Centred;
+use super::error::RegressionError;
 
 /// A column counts as constant when it varies by less than this, relative to its size.
 const CONSTANT: f64 = 1e-9;

@@ -2,10 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plane::{Plane, ShapeError};
+use super::{Plane, ShapeError};
 
 /// Speed of light in vacuum, m/s (exact, SI).
 pub const SPEED_OF_LIGHT_M_PER_S: f64 = 299_792_458.0;
+
+/// Share of the clip level from which on a phase sample counts as clipped: read noise spreads the clip (methods,
+/// section 2).
+pub const CLIPPED_SHARE: f64 = 0.985;
 
 /// How a vendor delivers the bins: vendors differ in order and sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,7 +129,7 @@ mod tests {
 
     #[test]
     fn equal_bins_have_no_distance() {
-        let bins = [(); 4].map(|()| Plane::filled(crate::plane::Shape::new(1, 1), 40.0));
+        let bins = [(); 4].map(|()| Plane::filled(crate::frame::Shape::new(1, 1), 40.0));
         let mut out = Plane::filled(bins[0].shape(), 0.0);
         distance_into(&bins, 20e6, false, &mut out).unwrap();
         assert!(out.values()[0].is_nan());

@@ -1,5 +1,7 @@
 //! A row-major image plane: height × width values of one kind.
 
+use crate::memory;
+
 use std::fmt;
 
 /// Height and width of an image, in pixels.
@@ -22,6 +24,12 @@ impl Shape {
     #[must_use]
     pub const fn pixels(self) -> usize {
         self.height * self.width
+    }
+
+    /// Row and column of the pixel at `index`, row by row. The image must not be empty.
+    #[must_use]
+    pub const fn place(self, index: usize) -> (usize, usize) {
+        (index / self.width, index % self.width)
     }
 }
 
@@ -62,11 +70,6 @@ pub struct Plane<T> {
     values: Vec<T>,
 }
 
-/// Bytes that a vector holds.
-pub(crate) fn bytes<T>(values: &Vec<T>) -> usize {
-    values.capacity() * size_of::<T>()
-}
-
 impl<T: Copy> Plane<T> {
     /// A plane with every pixel set to `value`.
     #[must_use]
@@ -98,7 +101,7 @@ impl<T: Copy> Plane<T> {
     /// Bytes that it holds.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        bytes(&self.values)
+        memory::bytes(&self.values)
     }
 
     /// Height and width.

@@ -1,48 +1,18 @@
-//! One frame of a recording, as the corrections see it.
+//! One frame of a recording, as the corrections see it: images of several kinds, and what is known of them.
 
-use bitflags::bitflags;
+mod channels;
+mod flags;
+mod geometry;
+mod integration_time;
+pub mod phase;
+mod plane;
 
-use crate::flags::PixelFlags;
-use crate::plane::{Plane, Shape, ShapeError};
-
-bitflags! {
-    /// The channels that a frame or a recording may carry.
-    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-    pub struct Channels: u16 {
-        /// Amplitude, eq. 1 of the paper, in digital numbers.
-        const AMPLITUDE = 1 << 0;
-        /// Radial distance.
-        const DISTANCE = 1 << 1;
-        /// Integration time, per frame or per pixel.
-        const INTEGRATION_TIME = 1 << 2;
-        /// The four raw bins A1..A4.
-        const PHASE_SAMPLES = 1 << 3;
-        /// DC image.
-        const INTENSITY = 1 << 4;
-        /// Time stamp.
-        const TIMESTAMP = 1 << 5;
-        /// Labels for calibration.
-        const TARGET = 1 << 6;
-        /// Amplitude as the vendor scaled it.
-        const VENDOR_AMPLITUDE = 1 << 7;
-        /// Confidence as the vendor delivered it.
-        const VENDOR_CONFIDENCE = 1 << 8;
-        /// Pose of the camera.
-        const POSE = 1 << 9;
-    }
-}
-
-/// Integration time of a frame, in microseconds per phase sample.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum IntegrationTime {
-    /// Not recorded.
-    #[default]
-    Unknown,
-    /// One time for all pixels: finite and positive.
-    PerFrame(f64),
-    /// One time for each pixel; NaN or 0 where it is unknown, otherwise positive.
-    PerPixel(Plane<f32>),
-}
+pub use channels::Channels;
+pub use flags::PixelFlags;
+pub use geometry::Intrinsics;
+pub use integration_time::IntegrationTime;
+pub use phase::PhaseConvention;
+pub use plane::{Plane, Shape, ShapeError, Window};
 
 /// One frame: height × width planes of one instant. Reuse one `Frame` for a whole recording: readers keep the
 /// memory of its planes.

@@ -2,7 +2,7 @@
 
 /// Where `cost` is least between the `bounds`: the best of 24 intervals, then the golden section in it and its
 /// neighbours, down to 1e-9 of the bounds.
-pub(super) fn minimum(bounds: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> f64 {
+pub(crate) fn minimum(bounds: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> f64 {
     const INTERVALS: u32 = 24;
     /// 0.618^36 of a twelfth: 2e-9.
     const HALVINGS: u32 = 36;

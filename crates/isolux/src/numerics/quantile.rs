@@ -1,16 +1,16 @@
 //! Exact order statistics of positive f32 values by counting, without sorting the image or allocating for each.
 
-use crate::plane::bytes;
+use super::bit_histogram::BitHistogram;
+use crate::memory;
 
-/// Positive floats order like their bits. The upper 16 (the sign is 0) choose a bin of under 1 % width, so that few
-/// values share the bin of a quantile and only these need to be sorted out.
-const BINS: usize = 1 << 15;
+/// Bins of under 1 % width: few values share the bin of a quantile, and only these need to be sorted out.
+type Bins = BitHistogram<16>;
 
 /// Working memory for order statistics, kept between images.
 /// Empty until it is used.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PositiveQuantiles {
-    bins: Vec<u32>,
+    bins: Bins,
     /// Bits of the values that share the bin of a wanted quantile.
     candidates: Vec<u32>,
 }
@@ -18,7 +18,7 @@ pub(crate) struct PositiveQuantiles {
 impl PositiveQuantiles {
     /// Bytes that it holds.
     pub(crate) fn bytes(&self) -> usize {
-        bytes(&self.bins) + bytes(&self.candidates)
+        self.bins.bytes() + memory::bytes(&self.candidates)
     }
 
     /// Makes room for images of `pixels`, so that no image allocates, however its values lie.
@@ -36,7 +36,8 @@ impl PositiveQuantiles {
     ) -> Option<([f32; N], usize)> {
         let count = self.count(values);
         let last = count.checked_sub(1)?;
-        let places = fractions.map(|fraction| self.find((fraction.clamp(0.0, 1.0) * last as f64) as usize));
+        let rank = |fraction: f64| (fraction.clamp(0.0, 1.0) * last as f64) as usize;
+        let places = fractions.map(|fraction| self.bins.find(rank(fraction)).unwrap_or((0, 0)));
         self.collect(values, places.map(|(bin, _)| bin));
         let found = places.map(|(bin, rank)| self.select(bin, rank));
         Some((found, count))
@@ -44,26 +45,14 @@ impl PositiveQuantiles {
 
     fn count(&mut self, values: &[f32]) -> usize {
         self.bins.clear();
-        self.bins.resize(BINS, 0);
         let mut count = 0;
         for &value in values {
             if is_positive(value) {
-                self.bins[(value.to_bits() >> 16) as usize] += 1;
+                self.bins.add(value);
                 count += 1;
             }
         }
         count
-    }
-
-    /// The bin that holds the value of this rank, and its rank within the bin.
-    fn find(&self, mut rank: usize) -> (u32, usize) {
-        for (bin, &count) in self.bins.iter().enumerate() {
-            match rank.checked_sub(count as usize) {
-                Some(rest) => rank = rest,
-                None => return (bin as u32, rank),
-            }
-        }
-        (0, 0)
     }
 
     fn collect<const N: usize>(&mut self, values: &[f32], bins: [u32; N]) {
@@ -71,7 +60,7 @@ impl PositiveQuantiles {
         for &value in values {
             let bits = value.to_bits();
             // Only a positive finite value has the upper bits of one, but for those just below infinity.
-            if bins.contains(&(bits >> 16)) && is_positive(value) {
+            if bins.contains(&Bins::bin(bits)) && is_positive(value) {
                 self.candidates.push(bits);
             }
         }
@@ -79,7 +68,7 @@ impl PositiveQuantiles {
 
     fn select(&mut self, bin: u32, rank: usize) -> f32 {
         // Values of lower bins come first, whichever bins were collected.
-        let below = self.candidates.iter().filter(|bits| **bits >> 16 < bin).count();
+        let below = self.candidates.iter().filter(|bits| Bins::bin(**bits) < bin).count();
         match (below + rank) < self.candidates.len() {
             true => f32::from_bits(*self.candidates.select_nth_unstable(below + rank).1),
             false => f32::NAN,

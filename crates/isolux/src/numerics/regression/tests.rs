@@ -1,6 +1,7 @@
 //! The regression against closed forms and made-up truths.
 
 use super::*;
+use crate::numerics::robust::Loss;
 
 /// Uniform pseudo-random numbers in −1..1: a linear congruential generator (Knuth's MMIX constants).
 struct Numbers(u64);

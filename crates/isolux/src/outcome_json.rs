@@ -10,13 +10,13 @@ pub(crate) fn serialize<T: Serialize, E: Serialize + Display, S: Serializer>(
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
-    struct Refusal<'a, E> {
+    struct Missing<'a, E> {
         #[serde(flatten)]
         reason: &'a E,
         because: String,
     }
     match figure {
         Ok(value) => value.serialize(serializer),
-        Err(reason) => Refusal { reason, because: reason.to_string() }.serialize(serializer),
+        Err(reason) => Missing { reason, because: reason.to_string() }.serialize(serializer),
     }
 }

@@ -7,9 +7,10 @@
 //! decide. A plane, unlike a mean, bends no slanted surface, and uneven weights do not tilt it: the texture of the
 //! amplitude stays out.
 
-use super::Image;
+use super::image::Image;
 use super::wiener::Wiener;
-use crate::plane::bytes;
+use crate::memory::bytes;
+use crate::numerics::plane_fit::{LocalPlane, PlaneMoments};
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 3;
@@ -31,14 +32,6 @@ pub(super) struct Guide {
     distance_m: Vec<f32>,
     /// Share of the detail, 0..1, that the guide left in, noise included.
     detail: Vec<f32>,
-}
-
-/// `d = middle + along_x x + along_y y`, in pixels from the middle one.
-#[derive(Clone, Copy, Debug)]
-struct Surface {
-    middle: f64,
-    along_x: f64,
-    along_y: f64,
 }
 
 impl Guide {
@@ -80,24 +73,24 @@ impl Guide {
 
     /// The distance, and its variance over `k`.
     fn pixel(&self, image: Image<'_>, k: f64, index: usize) -> (f32, f64) {
-        let (y, x) = (index / image.shape.width, index % image.shape.width);
-        let level = Surface { middle: f64::from(self.distance_m[index]), along_x: 0.0, along_y: 0.0 };
-        let roughly = self.sums(image, k, (y, x), level, &self.distance_m).surface(level);
-        let sums = self.sums(image, k, (y, x), roughly, image.distance_m);
-        (sums.surface(roughly).middle as f32, sums.variance())
+        let (y, x) = image.shape.place(index);
+        let level = LocalPlane::level(f64::from(self.distance_m[index]));
+        let roughly = self.members(image, k, (y, x), level, &self.distance_m).plane(level);
+        let members = self.members(image, k, (y, x), roughly, image.distance_m);
+        (members.plane(roughly).middle as f32, members.variance())
     }
 
     /// For weighted least squares of `values_m` around `known`.
-    fn sums(
+    fn members(
         &self,
         image: Image<'_>,
         k: f64,
         (y, x): (usize, usize),
-        known: Surface,
+        known: LocalPlane,
         values_m: &[f32],
-    ) -> Sums {
+    ) -> Members {
         let (height, width) = (image.shape.height, image.shape.width);
-        let mut sums = Sums::default();
+        let mut members = Members::default();
         for row in y.saturating_sub(RADIUS)..(y + RADIUS + 1).min(height) {
             let dy = row as f64 - y as f64;
             for column in x.saturating_sub(RADIUS)..(x + RADIUS + 1).min(width) {
@@ -107,12 +100,12 @@ impl Guide {
                 let weight = self.weight(image, k, index, plane);
                 if weight > 0.0 {
                     let value = f64::from(values_m[index]);
-                    sums.add(weight, dx, dy, value - plane);
-                    sums.widen(value);
+                    members.moments.add(weight, dx, dy, value - plane);
+                    members.widen(value);
                 }
             }
         }
-        sums
+        members
     }
 
     /// `a²`, reduced by the biweight of the guide's distance from the plane; 0 where the pixel takes no part.
@@ -130,35 +123,15 @@ impl Guide {
     }
 }
 
-/// Weighted moments of the places and of the residuals from the known plane.
+/// What a plane is fitted to.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    w: f64,
-    x: f64,
-    y: f64,
-    xx: f64,
-    xy: f64,
-    yy: f64,
-    r: f64,
-    xr: f64,
-    yr: f64,
+struct Members {
+    moments: PlaneMoments,
     /// Least and greatest value.
     range: Option<(f64, f64)>,
 }
 
-impl Sums {
-    fn add(&mut self, w: f64, x: f64, y: f64, r: f64) {
-        self.w += w;
-        self.x += w * x;
-        self.y += w * y;
-        self.xx += w * x * x;
-        self.xy += w * x * y;
-        self.yy += w * y * y;
-        self.r += w * r;
-        self.xr += w * x * r;
-        self.yr += w * y * r;
-    }
-
+impl Members {
     fn widen(&mut self, value: f64) {
         let (low, high) = self.range.unwrap_or((value, value));
         self.range = Some((low.min(value), high.max(value)));
@@ -167,36 +140,16 @@ impl Sums {
     /// Variance in the middle over `k`: that of the mean and, away from it, that of the slopes. The biweight is taken as
     /// part of the inverse variance, which is a little too careful.
     fn variance(&self) -> f64 {
-        let [x, y] = [self.x, self.y].map(|sum| sum / self.w);
-        let [xx, xy, yy] = [self.xx / self.w - x * x, self.xy / self.w - x * y, self.yy / self.w - y * y];
-        let determinant = xx * yy - xy * xy;
-        let half_trace = 0.5 * (xx + yy);
-        let tilt = if determinant <= LEAST_SPREAD * half_trace * half_trace {
-            0.0
-        } else {
-            (x * x * yy - 2.0 * x * y * xy + y * y * xx) / determinant
-        };
-        CHOSEN_BY_NOISE * (1.0 + tilt) / self.w
+        let tilt = self.moments.variance_of_slopes(LEAST_SPREAD).unwrap_or(0.0);
+        CHOSEN_BY_NOISE * (1.0 + tilt) / self.moments.weight()
     }
 
     /// The known plane corrected by that of the residuals; by their mean alone where the pixels determine no plane.
     /// In the middle it stays within the values that it is fitted to: nothing is extrapolated.
-    fn surface(&self, known: Surface) -> Surface {
+    fn plane(&self, known: LocalPlane) -> LocalPlane {
         let Some((low, high)) = self.range else { return known };
-        let [x, y, r] = [self.x, self.y, self.r].map(|sum| sum / self.w);
-        let [xx, xy, yy] = [self.xx / self.w - x * x, self.xy / self.w - x * y, self.yy / self.w - y * y];
-        let [xr, yr] = [self.xr / self.w - x * r, self.yr / self.w - y * r];
-        let determinant = xx * yy - xy * xy;
-        let half_trace = 0.5 * (xx + yy);
-        if determinant <= LEAST_SPREAD * half_trace * half_trace {
-            return Surface { middle: (known.middle + r).clamp(low, high), ..known };
-        }
-        let along_x = (xr * yy - yr * xy) / determinant;
-        let along_y = (yr * xx - xr * xy) / determinant;
-        Surface {
-            middle: (known.middle + r - along_x * x - along_y * y).clamp(low, high),
-            along_x: known.along_x + along_x,
-            along_y: known.along_y + along_y,
-        }
+        let level = || LocalPlane { middle: known.middle + self.moments.mean(), ..known };
+        let plane = self.moments.corrected(known, LEAST_SPREAD).unwrap_or_else(level);
+        LocalPlane { middle: plane.middle.clamp(low, high), ..plane }
     }
 }

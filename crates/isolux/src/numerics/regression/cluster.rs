@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{RegressionError, Solution};
+use super::error::RegressionError;
+use super::solve::Solution;
 
 /// Clusters below which a variance between them is no estimate.
 const MINIMUM_CLUSTERS: usize = 3;
@@ -66,7 +67,7 @@ impl Clusters {
             return 4.302_652_729_749_46;
         }
         let nu = (clusters - 1) as f64;
-        let z = crate::statistics::Z_95;
+        let z = crate::numerics::statistics::Z_95;
         z + (z.powi(3) + z) / (4.0 * nu)
             + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * nu.powi(2))
             + (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * nu.powi(3))

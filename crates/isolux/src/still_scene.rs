@@ -1,8 +1,8 @@
 //! Did the scene stand still while the integration time varied? Distances tell, since they hardly depend on it.
 
-use crate::frame::Frame;
-use crate::noise;
-use crate::plane::{Shape, Window};
+use crate::frame::{Frame, Shape, Window};
+use crate::numerics::differences;
+use crate::numerics::statistics::upper_median;
 
 /// The image is compared in this many blocks along each side.
 const BLOCKS: usize = 8;
@@ -60,8 +60,8 @@ impl MotionWatch {
             let amplitude =
                 indices.iter().map(|&i| f64::from(frame.amplitude.values()[i])).sum::<f64>() / count;
             let distance = indices.iter().map(|&i| f64::from(distance_m.values()[i])).sum::<f64>() / count;
-            let noise = noise::spatial(rows.chunks(window.width)).unwrap_or(f64::NAN);
-            let reliable = noise <= noise::DISTANCE_NOISE_SHARE * distance;
+            let noise = differences::spatial(rows.chunks(window.width)).unwrap_or(f64::NAN);
+            let reliable = noise <= differences::DISTANCE_NOISE_SHARE * distance;
             Block {
                 amplitude_per_us: amplitude / time_us,
                 distance_m: if reliable { distance } else { f64::NAN },
@@ -117,16 +117,16 @@ fn blocks(shape: Shape) -> impl Iterator<Item = Window> {
     })
 }
 
+/// Of the finite values; NaN without any.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    upper_median(&mut values).unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::Plane;
+    use crate::frame::Plane;
 
     fn frame(distance_m: f32) -> Frame {
         let shape = Shape::new(48, 64);

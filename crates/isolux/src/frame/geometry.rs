@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plane::{Plane, Shape};
+use super::{Plane, Shape};
 
 /// Pinhole intrinsics in pixels. (0, 0) is the centre of the upper left pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

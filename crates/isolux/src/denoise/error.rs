@@ -1,0 +1,15 @@
+//! Why a frame's distance cannot be denoised.
+
+use crate::frame::ShapeError;
+
+/// Why a frame's distance cannot be denoised.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DenoiseError {
+    /// Planes that do not fit together.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// There is no distance.
+    #[error("distance found missing, a plane of metres expected: denoising needs it")]
+    DistanceMissing,
+}
