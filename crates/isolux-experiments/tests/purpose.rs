@@ -25,10 +25,9 @@ fn desk(standardized: bool) -> Vec<(f64, Vec<f32>)> {
     let scene = Scene::builtin("office-desk").unwrap();
     let simulation = Simulation::new(CameraModel::preset(&scene.camera).unwrap(), scene, lab().seed).unwrap();
     let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
-    let choice = Choice { method: Method::Paper, ..Choice::default() };
-    let chain = Standardizer::plan(&choice, Some(&lab().calibration), channels).unwrap();
+    let chain = Standardizer::plan(&Choice::paper(), Some(&lab().calibration), channels).unwrap();
     let mut simulated = SimulatedFrame::new(simulation.shape());
-    let mut out = Standardized::new(simulation.shape());
+    let mut stream = chain.stream();
     let mut values = |index| {
         simulation.render_frame(index, &mut simulated).unwrap();
         let frame = &simulated.frame;
@@ -38,8 +37,7 @@ fn desk(standardized: bool) -> Vec<(f64, Vec<f32>)> {
             let measured = values.map(|(index, value)| if frame.is_valid(index) { *value } else { f32::NAN });
             return (time_us, measured.collect());
         }
-        chain.apply(frame, &mut out).unwrap();
-        (time_us, out.amplitude.values().to_vec())
+        (time_us, stream.push(frame).unwrap().amplitude.values().to_vec())
     };
     (0..simulation.len()).map(&mut values).collect()
 }

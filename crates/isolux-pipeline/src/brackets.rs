@@ -8,9 +8,6 @@ use crate::frames;
 use crate::observer::{Observer, Work};
 use crate::source::FrameSource;
 
-/// Integration times less than this factor apart are one, as everywhere.
-const SAME_TIME_RATIO: f64 = 1.01;
-
 /// Consecutive brackets: frames of a still scene at several integration times, which are merged into one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Brackets {
@@ -52,7 +49,7 @@ impl Brackets {
                 let IntegrationTime::PerFrame(time_us) = frame.integration_time_us else {
                     return Err(PipelineError::BracketTime { recording: name.to_owned(), frame: index });
                 };
-                let same = |known: &f64| (known / time_us).max(time_us / known) < SAME_TIME_RATIO;
+                let same = |known: &f64| (known / time_us).max(time_us / known) < IntegrationTime::SAME_RATIO;
                 if times_us.iter().any(same) {
                     lengths.push(times_us.len());
                     times_us.clear();

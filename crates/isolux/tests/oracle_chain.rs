@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::standardize::Memory;
+use common::standardize::next;
 use common::{builtin, calibrate, naive_chain, render};
 use isolux::calibrate::CalibrateSettings;
 use isolux::standardize::Method;
@@ -51,7 +51,7 @@ fn spread_out(frame: &mut Frame) {
 fn the_chain_equals_the_naive_oracle_pixel_by_pixel() {
     let calibration = calibration();
     let standardizer = paper(&calibration);
-    let mut memory = Memory::new(isolux::Shape::new(0, 0));
+    let mut stream = standardizer.stream();
     let highlights = builtin("highlights", 4);
     let mut simulated = SimulatedFrame::new(highlights.shape());
     let times = [
@@ -71,7 +71,7 @@ fn the_chain_equals_the_naive_oracle_pixel_by_pixel() {
         if number == 4 {
             spread_out(&mut frame);
         }
-        let out = memory.standardize(&standardizer, &frame).unwrap();
+        let out = next(&mut stream, &frame).unwrap();
         let summary = out.summary;
         let naive = naive_chain::standardize(&frame, &calibration);
         let cutoff = naive.cutoff.unwrap_or(f64::INFINITY);

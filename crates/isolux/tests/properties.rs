@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::standardize::{Finished, Memory, standardize};
+use common::standardize::{next, standardize};
 use common::strategies::{PIXELS, bits, cases, distance_steps, frames, specular_steps, steps, time_steps};
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
@@ -25,7 +25,7 @@ fn scale_time(frame: &mut Frame, factor: f32) {
 }
 
 /// The same flags, and values within `roundings` half ulps, of pixels that are valid in both.
-fn assert_near(found: &Finished, expected: &[f32], roundings: f32) -> Result<(), TestCaseError> {
+fn assert_near(found: &Standardized, expected: &[f32], roundings: f32) -> Result<(), TestCaseError> {
     for (found, &expected) in found.amplitude.values().iter().zip(expected) {
         prop_assert_eq!(found.is_nan(), expected.is_nan());
         let deviation = (found / expected - 1.0).abs();
@@ -134,7 +134,7 @@ proptest! {
         damaged.flag_amplitude(None);
         let found = standardize(&standardizer, &damaged);
         for index in (0..PIXELS).filter(|index| spoilt.iter().all(|(i, ..)| i != index)) {
-            let value = |out: &Finished| out.amplitude.values()[index].to_bits();
+            let value = |out: &Standardized| out.amplitude.values()[index].to_bits();
             prop_assert_eq!(value(&found), value(&expected));
             prop_assert_eq!(found.flags.values()[index], expected.flags.values()[index]);
         }
@@ -147,9 +147,9 @@ proptest! {
         specular in specular_steps(),
     ) {
         let standardizer = steps(time, distance, specular);
-        let mut memory = Memory::new(Shape::new(2, 3));
+        let mut stream = standardizer.stream();
         for frame in sequence.iter().chain(sequence.iter().rev()) {
-            let reused = memory.standardize(&standardizer, frame).unwrap();
+            let reused = next(&mut stream, frame).unwrap();
             let fresh = standardize(&standardizer, frame);
             prop_assert_eq!(fresh.summary, reused.summary);
             prop_assert_eq!(bits(&reused.amplitude), bits(&fresh.amplitude));

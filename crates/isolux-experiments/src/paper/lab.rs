@@ -104,9 +104,7 @@ impl Lab {
         distance: DistanceStep,
         specular: SpecularStep,
     ) -> Result<Standardized, ExperimentError> {
-        let mut out = Standardized::new(frame.shape());
-        self.plan(time, distance, specular)?.apply(frame, &mut out)?;
-        Ok(out)
+        Ok(self.plan(time, distance, specular)?.stream().push(frame)?.clone())
     }
 }
 

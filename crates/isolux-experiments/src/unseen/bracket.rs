@@ -84,20 +84,21 @@ pub fn measure(camera: &HeldOut, case: &BracketCase) -> Result<BracketFigures, E
         (plan(camera, &of_frames, None, true)?, plan(camera, &of_frames, None, false)?);
     let (noisy_plan, mut merge) = noisy_plan.bracket()?;
     let mut merge_clean = merge.clone();
+    let (mut noisy_frames, mut clean_frames) = (noisy_plan.stream(), clean_plan.stream());
     let new = || Standardized::new(simulated.shape());
-    let (mut noisy, mut clean, mut merged, mut merged_clean) = (new(), new(), new(), new());
+    let (mut clean, mut merged, mut merged_clean) = (new(), new(), new());
     let mut collector = Collector::default();
     let mut squares = vec![Squares::default(); simulated.shape().pixels()];
     let (mut unusable, mut filled, mut usable) = (0u64, 0u64, 0u64);
     for_each(&simulated, |index, simulated_frame| {
         let frame = &simulated_frame.frame;
-        noisy_plan.apply(frame, &mut noisy)?;
-        clean_plan.apply(&without_noise(simulated_frame, &camera.model), &mut clean)?;
+        let noisy = noisy_frames.push(frame)?;
+        clean.clone_from(clean_frames.push(&without_noise(simulated_frame, &camera.model))?);
         for (pixel, squares) in squares.iter_mut().enumerate() {
             squares.times.resize(case.times_us.len(), 0.0);
-            squares.times[index % case.times_us.len()] += error(&noisy, &clean, pixel).powi(2);
+            squares.times[index % case.times_us.len()] += error(noisy, &clean, pixel).powi(2);
         }
-        merge.push(&noisy)?;
+        merge.push(noisy)?;
         // The same weights, so that the difference is noise alone.
         clean.sigma.clone_from(&noisy.sigma);
         clean.flags.clone_from(&noisy.flags);

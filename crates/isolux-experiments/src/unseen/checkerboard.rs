@@ -3,11 +3,11 @@
 
 use isolux::calibrate::{CalibrateSettings, ExposureFit, Measurements, TargetSweep, label_windows};
 use isolux::standardize::{
-    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, Stream, TimeStep,
+    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep,
 };
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use isolux::{
-    Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, Standardized, Standardizer,
+    Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, RecordingTraits, Standardizer,
 };
 
 use crate::error::ExperimentError;
@@ -80,22 +80,21 @@ pub fn spreads(frames: &[Frame], protocol: &Protocol) -> Result<Vec<Spread>, Exp
     let mut windows = 0;
     for fold in 0..FOLDS {
         let calibration = calibrate_without(frames, protocol, fold)?;
-        let stream = Stream {
-            channels: Channels::AMPLITUDE | Channels::DISTANCE,
+        let traits = RecordingTraits {
             shape: frames.first().map(Frame::shape),
             intrinsics: Some(protocol.intrinsics),
+            ..(Channels::AMPLITUDE | Channels::DISTANCE).into()
         };
         let mut chains = Vec::new();
         for method in &methods {
             let terms = Some(&calibration).filter(|_| method.calibrated);
-            chains.push(Standardizer::plan_for(&method.choice, terms, stream)?);
+            chains.push(Standardizer::plan(&method.choice, terms, traits)?.stream());
         }
         for frame in frames.iter().skip(fold).step_by(FOLDS) {
-            let mut out = Standardized::new(frame.shape());
             let measured = measured_windows(frame, protocol);
             windows += measured.len();
-            for (chain, logs) in chains.iter().zip(&mut logs) {
-                chain.apply(frame, &mut out)?;
+            for (chain, logs) in chains.iter_mut().zip(&mut logs) {
+                let out = chain.push(frame)?;
                 logs.extend(measured.iter().filter_map(|window| ln_median(&out.amplitude, window)));
             }
         }

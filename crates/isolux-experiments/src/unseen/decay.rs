@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use isolux::{Frame, PixelFlags, Standardized, Standardizer, Window};
+use isolux::{Frame, PixelFlags, Standardized, Stream, Window};
 use isolux_camera::{Scene, Simulation};
 
 use super::chains::Chain;
@@ -39,9 +39,8 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<Vec<Decay>, Exper
         }
     }
     let simulation = Simulation::new(cropped(&held_out.model), scene, MEASURED)?;
-    let standardizers: Vec<Standardizer> =
-        chains.iter().map(|chain| chain.plan(held_out)).collect::<Result<_, _>>()?;
-    let mut out = Standardized::new(simulation.shape());
+    let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out)?.stream());
+    let mut streams: Vec<Stream> = chains.iter().map(plan).collect::<Result<_, _>>()?;
     // Keyed by pose and time; for each chain the sum and number of the frames' means.
     let mut positions: BTreeMap<(usize, u64), Vec<[f64; 2]>> = BTreeMap::new();
     for_each(&simulation, |index, simulated| {
@@ -53,9 +52,8 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<Vec<Decay>, Exper
         let planned = simulation.frames()[index];
         let key = (planned.pose, planned.integration_time_us.to_bits());
         let sums = positions.entry(key).or_insert_with(|| vec![[0.0; 2]; chains.len()]);
-        for (standardizer, sum) in standardizers.iter().zip(sums) {
-            standardizer.apply(frame, &mut out)?;
-            if let Some(mean) = mean(&out, window) {
+        for (stream, sum) in streams.iter_mut().zip(sums) {
+            if let Some(mean) = mean(stream.push(frame)?, window) {
                 (sum[0], sum[1]) = (sum[0] + mean, sum[1] + 1.0);
             }
         }

@@ -5,10 +5,9 @@ mod exposures;
 mod stack;
 
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
-use isolux::phase::CLIPPED_SHARE;
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
-use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardized, Standardizer};
+use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardizer, Stream};
 use isolux_camera::{SimulatedFrame, Simulation};
 
 use crate::error::ExperimentError;
@@ -153,7 +152,7 @@ fn calibrate(simulation: &Simulation, times_us: &[f64]) -> Result<Calibration, E
 fn measured(simulation: &Simulation, plans: &[Standardizer]) -> Result<(Vec<Stack>, Stack), ExperimentError> {
     let mut stacks = vec![Stack::default(); plans.len()];
     let mut truth = Stack::default();
-    let mut out = Standardized::new(simulation.shape());
+    let mut streams: Vec<Stream> = plans.iter().map(Standardizer::stream).collect();
     let dead = simulation.dead_pixels();
     let (mut frames, mut clipped) = (0, vec![false; dead.len()]);
     for_each(simulation, |simulated| {
@@ -163,8 +162,8 @@ fn measured(simulation: &Simulation, plans: &[Standardizer]) -> Result<(Vec<Stac
         let flags = simulated.frame.flags.values().iter();
         clipped.iter_mut().zip(flags).for_each(|(clipped, f)| *clipped |= f.contains(PixelFlags::SATURATED));
         let place = frames % TEST_FRAMES;
-        for (stack, plan) in stacks.iter_mut().zip(plans) {
-            plan.apply(&simulated.frame, &mut out)?;
+        for (stack, stream) in stacks.iter_mut().zip(&mut streams) {
+            let out = stream.push(&simulated.frame)?;
             stack.add(place, out.amplitude.values().iter().map(|&value| f64::from(value)), &clipped);
         }
         truth.add(place, true_values(simulated), &clipped);

@@ -2,9 +2,9 @@
 
 use isolux::calibrate::NoiseSurvey;
 use isolux::evaluate::SigmaTally;
-use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep, StandardizeError};
+use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep};
 use isolux::terms::NoiseModel;
-use isolux::{Channels, Choice, DenoiseRule, PixelFlags, Standardized, Standardizer};
+use isolux::{Channels, Choice, DenoiseRule, PixelFlags, Standardized, RecordingTraits, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::held_out::{HeldOut, MEASURED};
@@ -138,12 +138,13 @@ pub(super) fn plan(
         specular: Some(SpecularStep::None),
         sigma: if sigma { SigmaStep::Required } else { SigmaStep::None },
         noise,
-        modulation_frequency_hz: case.frequency.then_some(camera.model.modulation_frequency_hz),
         ..Choice::default()
     };
     let mut channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
     channels.set(Channels::INTENSITY, case.intensity);
-    Ok(Standardizer::plan(&choice, Some(&camera.calibration), channels)?)
+    let modulation_frequency_hz = case.frequency.then_some(camera.model.modulation_frequency_hz);
+    let traits = RecordingTraits { modulation_frequency_hz, ..channels.into() };
+    Ok(Standardizer::plan(&choice, Some(&camera.calibration), traits)?)
 }
 
 /// The noise that the frames themselves show.
@@ -167,31 +168,19 @@ fn survey(simulated: &Simulation) -> Result<Option<NoiseModel>, ExperimentError>
 pub fn measure(camera: &HeldOut, case: &SigmaCase) -> Result<SigmaFigures, ExperimentError> {
     let simulated = Simulation::new(camera.model.clone(), Scene::builtin(case.scene)?, MEASURED)?;
     let noise = if case.noise_from_scene { survey(&simulated)? } else { None };
-    let (noisy_plan, clean_plan) = (plan(camera, case, noise, true)?, plan(camera, case, None, false)?);
-    let mut history = noisy_plan.history();
-    let mut noisy = Standardized::new(simulated.shape());
-    let mut clean = Standardized::new(simulated.shape());
-    let (mut smoothed, mut left) = (noisy.amplitude.clone(), noisy.amplitude.clone());
+    let mut noisy = plan(camera, case, noise, true)?.stream();
+    let mut clean = plan(camera, case, None, false)?.stream();
     let mut collector = Collector::default();
     let mut last = None;
     for_each(&simulated, |index, simulated_frame| {
         let frame = &simulated_frame.frame;
         let pose = simulated.frames()[index].pose;
-        match &mut history {
-            Some(history) => {
-                if last.replace(pose) != Some(pose) {
-                    history.reset();
-                }
-                history.push(frame, &mut smoothed).map_err(StandardizeError::from)?;
-                history.variance_left(&mut left);
-                noisy_plan.apply_denoised(frame, &smoothed, &left, &mut noisy)?;
-            }
-            None => {
-                noisy_plan.apply(frame, &mut noisy)?;
-            }
+        if last.replace(pose) != Some(pose) {
+            noisy.reset();
         }
-        clean_plan.apply(&without_noise(simulated_frame, &camera.model), &mut clean)?;
-        collector.push(&noisy, &clean, |index| true_snr(simulated_frame, &camera.model, index));
+        let noisy = noisy.push(frame)?;
+        let clean = clean.push(&without_noise(simulated_frame, &camera.model))?;
+        collector.push(noisy, clean, |index| true_snr(simulated_frame, &camera.model, index));
         Ok(())
     })?;
     Ok(collector.finish())

@@ -2,7 +2,7 @@
 //! allows.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, SnrStratum};
-use isolux::{PixelFlags, Plane, Standardized, Standardizer};
+use isolux::{PixelFlags, Plane, Stream};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::chains::Chain;
@@ -47,26 +47,26 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Exper
         run.integration_times_us = TIMES_US.to_vec();
     }
     let simulation = Simulation::new(held_out.model.clone(), scene, MEASURED)?;
-    let standardizers: Vec<Standardizer> =
-        chains.iter().map(|chain| chain.plan(held_out)).collect::<Result<_, _>>()?;
+    let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out)?.stream());
+    let mut streams: Vec<Stream> = chains.iter().map(plan).collect::<Result<_, _>>()?;
     let shape = simulation.shape();
     let evaluator = || Evaluator::new(shape, EvaluationSettings::default());
     let mut raw = evaluator();
     let mut evaluators: Vec<Evaluator> = (0..=chains.len()).map(|_| evaluator()).collect();
     let mut valid = vec![0usize; chains.len()];
     let (mut measured, mut kept) = (0, f64::NAN);
-    let mut outs: Vec<Standardized> = chains.iter().map(|_| Standardized::new(shape)).collect();
     for_each(&simulation, |_, simulated| {
         let frame = &simulated.frame;
         let mut shared: Plane<PixelFlags> = frame.flags.clone();
         measured += frame.flags.values().iter().filter(|flags| !flags.contains(PixelFlags::INVALID)).count();
-        for ((standardizer, out), valid) in standardizers.iter().zip(&mut outs).zip(&mut valid) {
-            *valid += standardizer.apply(frame, out)?.valid;
+        for (stream, valid) in streams.iter_mut().zip(&mut valid) {
+            let out = stream.push(frame)?;
+            *valid += out.summary.valid;
             shared.values_mut().iter_mut().zip(out.flags.values()).for_each(|(shared, own)| *shared |= *own);
         }
         let truth = true_factors(&held_out.model, &held_out.calibration, simulated);
         raw.push(&EvaluationFrame::of_standardized(frame, &frame.amplitude, &shared))?;
-        let planes = std::iter::once(&truth).chain(outs.iter().map(|out| &out.amplitude));
+        let planes = std::iter::once(&truth).chain(streams.iter().map(|stream| &stream.last().amplitude));
         for (evaluator, plane) in evaluators.iter_mut().zip(planes) {
             evaluator.push(&EvaluationFrame::of_standardized(frame, plane, &shared))?;
         }

@@ -8,10 +8,10 @@
 
 use isolux::calibrate::{CalibrateSettings, ExposureFit, FitReport, Measurements, TargetSweep};
 use isolux::standardize::{
-    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, Stream, TimeStep,
+    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep,
 };
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
-use isolux::{Calibration, Channels, Choice, DenoiseRule, PixelFlags, Standardized, Standardizer};
+use isolux::{Calibration, Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use crate::error::ExperimentError;
@@ -68,10 +68,10 @@ pub fn calibrate_random(seed: u64) -> Result<(Calibration, FitReport), Experimen
 /// [`ExperimentError`] when the simulation or a step fails.
 pub fn patches(seed: u64, calibration: &Calibration, step: usize) -> Result<PatchFigures, ExperimentError> {
     let simulation = Simulation::new(CameraModel::random(seed), Scene::builtin(PATCHES)?, seed + 1000)?;
-    let stream = Stream {
-        channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
+    let traits = RecordingTraits {
         shape: Some(simulation.shape()),
         intrinsics: Some(simulation.model().intrinsics),
+        ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     let textbook = Choice {
         time: Some(TimeStep::Linear),
@@ -86,19 +86,15 @@ pub fn patches(seed: u64, calibration: &Calibration, step: usize) -> Result<Patc
         denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
         ..textbook
     };
-    let chain = Standardizer::plan_for(&fitted, Some(calibration), stream)?;
-    let plain = Standardizer::plan_for(&textbook, None, stream)?;
-    let (mut out, mut without) =
-        (Standardized::new(simulation.shape()), Standardized::new(simulation.shape()));
+    let mut chain = Standardizer::plan(&fitted, Some(calibration), traits)?.stream();
+    let mut plain = Standardizer::plan(&textbook, None, traits)?.stream();
     let mut sums = Sums::default();
     let mut simulated = SimulatedFrame::new(simulation.shape());
     for index in (0..simulation.len()).step_by(step.max(1)) {
         simulation.render_frame(index, &mut simulated)?;
         sums.frames[1] += 1;
         if usable(&simulated) >= USABLE {
-            chain.apply(&simulated.frame, &mut out)?;
-            plain.apply(&simulated.frame, &mut without)?;
-            sums.add(&simulated, &out, &without);
+            sums.add(&simulated, chain.push(&simulated.frame)?, plain.push(&simulated.frame)?);
         }
     }
     Ok(sums.figures(seed))

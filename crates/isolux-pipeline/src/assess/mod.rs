@@ -5,7 +5,7 @@ mod rivals;
 mod samples;
 
 use isolux::evaluate::{Comparison, nearest_reference};
-use isolux::motion::MotionWatch;
+use isolux::still_scene::MotionWatch;
 use isolux::{Calibration, Channels, Frame, IntegrationTime, Standardizer};
 
 use self::evaluation::Evaluation;

@@ -1,7 +1,7 @@
 //! The field: identical frames and identical pixels for every competitor.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
-use isolux::{Frame, PixelFlags, Plane, Standardized, Standardizer, Window};
+use isolux::{Frame, PixelFlags, Plane, Standardizer, Window};
 use rayon::prelude::*;
 
 use super::methods::Competitor;
@@ -149,7 +149,7 @@ impl Field {
         let reference = reference.map(|position| selected[position]);
         let shape = self.frames[0].shape();
         let mut evaluator = Evaluator::new(shape, EvaluationSettings::default());
-        let mut out = Standardized::new(shape);
+        let mut stream = standardizer.map(Standardizer::stream);
         for (is_reference, index) in reference
             .into_iter()
             .map(|index| (true, index))
@@ -157,11 +157,8 @@ impl Field {
         {
             let frame = &self.frames[index];
             let flags = self.flags_for(index, selection);
-            let values = match standardizer {
-                Some(standardizer) => {
-                    standardizer.apply(frame, &mut out)?;
-                    &out.amplitude
-                }
+            let values = match &mut stream {
+                Some(stream) => &stream.push(frame)?.amplitude,
                 None => &frame.amplitude,
             };
             let frame = EvaluationFrame::of_standardized(frame, values, &flags);
@@ -184,10 +181,11 @@ fn shared_flags(
     frame: &Frame,
     standardizers: &[(Competitor, Standardizer)],
 ) -> Result<(Plane<PixelFlags>, Vec<usize>), ExperimentError> {
-    let mut out = Standardized::new(frame.shape());
     let (mut shared, mut valid) = (frame.flags.clone(), Vec::new());
     for (_, standardizer) in standardizers {
-        valid.push(standardizer.apply(frame, &mut out)?.valid);
+        let mut stream = standardizer.stream();
+        let out = stream.push(frame)?;
+        valid.push(out.summary.valid);
         for (shared, own) in shared.values_mut().iter_mut().zip(out.flags.values()) {
             *shared |= *own;
         }

@@ -134,7 +134,7 @@ pub(super) fn cubic(lab: &Lab) -> Result<&Cubic, ExperimentError> {
 
 /// A cubic at one distance, with its continuation outside the fitted range.
 pub(super) fn multiplier(cubic: &Cubic, distance_m: f64) -> f64 {
-    f64::from(cubic.gain().at(distance_m as f32))
+    f64::from(cubic.distance_law().at(distance_m as f32))
 }
 
 /// The table's multiplier for one integration time; NaN where it has none.

@@ -1,7 +1,7 @@
 //! Noise that the distance brings into the amplitude.
 
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
-use isolux::{Standardized, Window};
+use isolux::Window;
 use isolux_camera::{CameraModel, Scene, Simulation};
 use isolux_report::page::{Block, Chart, Claim, Scale, Series, Stroke, Table};
 
@@ -86,18 +86,16 @@ fn measure(lab: &Lab) -> Result<Vec<Noise>, ExperimentError> {
     let camera = window_camera(&lab.camera);
     let simulation = Simulation::new(camera, scene, lab.seed)?;
     let plan = |distance| lab.plan(TimeStep::None, distance, SpecularStep::None);
-    let (square, cubic) = (plan(DistanceStep::Square)?, plan(DistanceStep::Cubic)?);
-    let mut out = Standardized::new(simulation.shape());
+    let (mut square, mut cubic) =
+        (plan(DistanceStep::Square)?.stream(), plan(DistanceStep::Cubic)?.stream());
     let mut found: Vec<Noise> = Vec::new();
     let mut sums = [Differences::default(), Differences::default(), Differences::default()];
     for_each(&simulation, |index, simulated| {
         let frame = &simulated.frame;
         let planned = simulation.frames()[index];
         sums[0].push(frame.amplitude.values());
-        square.apply(frame, &mut out)?;
-        sums[1].push(out.amplitude.values());
-        cubic.apply(frame, &mut out)?;
-        sums[2].push(out.amplitude.values());
+        sums[1].push(square.push(frame)?.amplitude.values());
+        sums[2].push(cubic.push(frame)?.amplitude.values());
         let next = simulation.frames().get(index + 1);
         let same = |next: &isolux_camera::PlannedFrame| {
             (next.pose, next.integration_time_us) == (planned.pose, planned.integration_time_us)

@@ -2,7 +2,7 @@
 //! after standardization.
 
 use isolux::standardize::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
-use isolux::{Calibration, Channels, IntegrationTime, Plane, Standardized, Standardizer};
+use isolux::{Calibration, Channels, IntegrationTime, Plane, Standardizer, Stream};
 use isolux_camera::scene::object::{Form, Object};
 use isolux_camera::scene::run::Run;
 use isolux_camera::scene::texture::Texture;
@@ -158,16 +158,14 @@ impl<'a> Collector<'a> {
     }
 
     fn record(&mut self, simulated: &Simulation, distance_m: Option<f64>) -> Result<(), ExperimentError> {
-        let mut out = Standardized::new(simulated.shape());
+        let mut streams = self.standardizers.each_ref().map(Standardizer::stream);
         for_each(simulated, |_, simulated| {
             let frame = &simulated.frame;
             let IntegrationTime::PerFrame(integration_time_us) = frame.integration_time_us else {
                 return Ok(());
             };
-            let mut image = |standardizer: &Standardizer| {
-                standardizer.apply(frame, &mut out).map(|_| out.amplitude.clone())
-            };
-            let [raw, time_only, standardized] = self.standardizers.each_ref().map(&mut image);
+            let image = |stream: &mut Stream| stream.push(frame).map(|out| out.amplitude.clone());
+            let [raw, time_only, standardized] = streams.each_mut().map(image);
             let conditions = Conditions { integration_time_us, distance_m };
             if self.reference.is_none() && self.is_reference(conditions) {
                 self.reference = Some((self.shots.len(), simulated.truth.clone()));

@@ -2,7 +2,7 @@
 
 use isolux::calibration::REFERENCE_TIME_US;
 use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
-use isolux::{IntegrationTime, Plane, Standardized, Window};
+use isolux::{IntegrationTime, Plane, Window};
 use isolux_camera::Scene;
 use isolux_camera::scene::run::RegisterRange;
 
@@ -68,11 +68,11 @@ impl Sweep {
             picture: Plane::filled(shape, f32::NAN),
         };
         let table = lab.plan(TimeStep::Lut, DistanceStep::None, SpecularStep::None)?;
-        let (mut corrected, mut noise_free) = (Standardized::new(shape), Standardized::new(shape));
+        let (mut corrected, mut noise_free) = (table.stream(), table.stream());
         for_each(&simulation, |_, simulated| {
             let mut frame = simulated.frame.clone();
             let IntegrationTime::PerFrame(time_us) = frame.integration_time_us else { return Ok(()) };
-            table.apply(&frame, &mut corrected)?;
+            let corrected = corrected.push(&frame)?;
             sweep.times_us.push(time_us);
             if Some(time_us) == lab.calibration.reference.integration_time_us {
                 sweep.picture = frame.amplitude.clone();
@@ -80,7 +80,7 @@ impl Sweep {
             let raw: Vec<f64> =
                 sweep.regions.iter().map(|region| mean_amplitude(&frame, region.window)).collect();
             frame.amplitude = simulated.truth.noise_free_amplitude.clone();
-            table.apply(&frame, &mut noise_free)?;
+            let noise_free = noise_free.push(&frame)?;
             for (region, raw) in sweep.regions.iter_mut().zip(raw) {
                 region.raw.push(raw);
                 region.corrected.push(mean(corrected.amplitude.values(), region.window.indices(shape)));

@@ -1,7 +1,7 @@
 //! Frames at a wanted signal-to-noise ratio, scaled by d² with each rule.
 
-use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, StandardizeError, TimeStep};
-use isolux::{Channels, Choice, DenoiseRule, Plane, Standardized, Standardizer};
+use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::{Channels, Choice, DenoiseRule, Frame, Plane, Standardizer};
 use isolux_camera::scene::object::Object;
 use isolux_camera::scene::run::Run;
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
@@ -78,22 +78,10 @@ pub(super) struct Scaled {
 impl Scaled {
     /// With the distance as the rule leaves it; with the temporal one those frames with a full history alone.
     pub(super) fn new(frames: &[SimulatedFrame], rule: Option<DenoiseRule>) -> Result<Self, ExperimentError> {
-        let standardizer = standardizer(rule)?;
-        let mut history = standardizer.history();
-        let mut smoothed = frames[0].frame.amplitude.clone();
-        let mut out = Standardized::new(smoothed.shape());
+        let mut stream = standardizer(rule)?.stream();
         let mut planes = Vec::new();
         for SimulatedFrame { frame, .. } in frames {
-            match &mut history {
-                Some(history) => {
-                    history.push(frame, &mut smoothed).map_err(StandardizeError::from)?;
-                    standardizer.apply_at(frame, &smoothed, &mut out)?;
-                }
-                None => {
-                    standardizer.apply(frame, &mut out)?;
-                }
-            }
-            planes.push(out.amplitude.clone());
+            planes.push(stream.push(frame)?.amplitude.clone());
         }
         if rule == Some(DenoiseRule::Temporal) {
             planes.drain(..WARMING);
@@ -103,12 +91,11 @@ impl Scaled {
 
     /// With the true distance.
     pub(super) fn perfect(frames: &[SimulatedFrame]) -> Result<Self, ExperimentError> {
-        let standardizer = standardizer(None)?;
-        let mut out = Standardized::new(frames[0].frame.shape());
+        let mut stream = standardizer(None)?.stream();
         let mut planes = Vec::new();
         for SimulatedFrame { frame, truth, .. } in frames {
-            standardizer.apply_at(frame, &truth.true_distance_m, &mut out)?;
-            planes.push(out.amplitude.clone());
+            let frame = Frame { distance_m: Some(truth.true_distance_m.clone()), ..frame.clone() };
+            planes.push(stream.push(&frame)?.amplitude.clone());
         }
         Ok(Self { planes })
     }

@@ -1,5 +1,6 @@
 //! Exposures of unseen cameras in the dark and in strong ambient light.
 
+use isolux::phase::CLIPPED_SHARE;
 use isolux::PixelFlags;
 use isolux_camera::{CameraModel, FullWell, Scene, SimulatedFrame, Simulation};
 
@@ -14,8 +15,6 @@ pub enum Light {
     StrongAmbient,
 }
 
-/// Share of the clip level from which on a bin is clipped (methods, section 2).
-const CLIPPED: f64 = 0.985;
 
 /// A random camera with fewer pixels of the same view.
 pub(super) fn camera_of(seed: u64) -> CameraModel {
@@ -72,7 +71,7 @@ pub(super) fn for_each(
     simulation: &Simulation,
     mut visit: impl FnMut(&SimulatedFrame) -> Result<(), ExperimentError>,
 ) -> Result<(), ExperimentError> {
-    let clip_dn = (CLIPPED * simulation.model().clip_dn()) as f32;
+    let clip_dn = (CLIPPED_SHARE * simulation.model().clip_dn()) as f32;
     let mut out = SimulatedFrame::new(simulation.shape());
     for index in 0..simulation.len() {
         simulation.render_frame(index, &mut out)?;

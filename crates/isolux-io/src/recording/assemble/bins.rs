@@ -6,8 +6,6 @@ use super::loaded::Loaded;
 use crate::error::RecordingError;
 use crate::recording::source::RawFrame;
 
-/// A phase sample from this fraction of the clip level on is taken for clipped: read noise spreads the clip.
-const CLIPPED_FRACTION: f32 = 0.985;
 
 /// Reads the phase samples into `slot`, whose memory is reused; false where there are none.
 pub(super) fn read(loaded: &Loaded<'_>, slot: &mut Option<[Plane<f32>; 4]>) -> Result<bool, RecordingError> {
@@ -33,7 +31,7 @@ fn positions(convention: PhaseConvention) -> [usize; 4] {
 
 /// Marks the pixels with a bin at `clip`, the value that bins cannot exceed.
 pub(super) fn flag_clipped(bins: &[Plane<f32>; 4], clip: f32, flags: &mut Plane<PixelFlags>) {
-    let level = clip * CLIPPED_FRACTION;
+    let level = clip * phase::CLIPPED_SHARE as f32;
     for bin in bins {
         for (flags, &value) in flags.values_mut().iter_mut().zip(bin.values()) {
             flags.set(PixelFlags::SATURATED, value >= level || flags.contains(PixelFlags::SATURATED));
