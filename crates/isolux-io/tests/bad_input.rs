@@ -115,7 +115,7 @@ fn frames_beyond_any_camera_are_refused_before_memory_is_asked_for() {
 #[test]
 fn integration_times_without_meaning() {
     let per_frame = |values: [f64; 2]| {
-        let folder = Folder::with(&[amplitude(), ("integration_time_us", Array::new("<f8", &[2], &values))]);
+        let folder = Folder::with(&[amplitude(), ("integration_time_us", Array::of("<f8", &[2], &values))]);
         failure(folder.path())
     };
     expect(

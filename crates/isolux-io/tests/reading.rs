@@ -43,7 +43,7 @@ fn one_frame_and_tiny_images_are_recordings() {
 #[test]
 fn integers_are_millimetres_and_floats_metres_unless_told_otherwise() {
     let read_distance = |descr: &str, json: &str| {
-        let distance = Array::new(descr, &[1, 1, 4], &[1500.0, 0.0, 1.0, 12345.0]);
+        let distance = Array::of(descr, &[1, 1, 4], &[1500.0, 0.0, 1.0, 12345.0]);
         let arrays = [("amplitude", Array::counting("<u2", &[1, 1, 4])), ("distance", distance)];
         let folder = Folder::described(&arrays, json);
         read(&mut *folder.open().unwrap(), 0).unwrap().distance_m.unwrap().values().to_vec()
@@ -57,7 +57,7 @@ fn integers_are_millimetres_and_floats_metres_unless_told_otherwise() {
 
 #[test]
 fn depth_becomes_radial_and_invalid_stays_invalid() {
-    let depth = Array::new("<f4", &[1, 1, 3], &[2.0, 0.0, -1.0]);
+    let depth = Array::of("<f4", &[1, 1, 3], &[2.0, 0.0, -1.0]);
     let arrays = [("amplitude", Array::counting("<u2", &[1, 1, 3])), ("distance", depth)];
     let json = r#"{"distance_kind": "z", "intrinsics": {"fx": 1, "fy": 1, "cx": 1, "cy": 0}}"#;
     let folder = Folder::described(&arrays, json);
@@ -70,7 +70,7 @@ fn depth_becomes_radial_and_invalid_stays_invalid() {
 fn codes_zeros_and_nan_are_flagged_and_their_neighbours_are_not() {
     let values = [7.0, 65535.0, 0.0, f64::NAN, 65534.0, -3.0];
     let folder = Folder::described(
-        &[("amplitude", Array::new("<f4", &[1, 2, 3], &values))],
+        &[("amplitude", Array::of("<f4", &[1, 2, 3], &values))],
         r#"{"saturated_amplitude": 65535}"#,
     );
     let frame = read(&mut *folder.open().unwrap(), 0).unwrap();
@@ -82,7 +82,7 @@ fn codes_zeros_and_nan_are_flagged_and_their_neighbours_are_not() {
 #[test]
 fn flags_of_the_frame_before_are_forgotten() {
     let values = [0.0, 5.0, 5.0, 0.0];
-    let folder = Folder::with(&[("amplitude", Array::new("|u1", &[2, 1, 2], &values))]);
+    let folder = Folder::with(&[("amplitude", Array::of("|u1", &[2, 1, 2], &values))]);
     let mut recording = folder.open().unwrap();
     let mut frame = Frame::new(Shape::new(9, 9));
     for (index, expected) in [(0, [true, false]), (1, [false, true])] {
@@ -105,9 +105,9 @@ fn times_are_per_frame_per_pixel_constant_or_unknown() {
     use IntegrationTime::{PerFrame, PerPixel, Unknown};
     assert_eq!(time(None, "{}"), [Unknown, Unknown]);
     assert_eq!(time(None, r#"{"integration_time_us": 0.5}"#), [PerFrame(0.5), PerFrame(0.5)]);
-    let per_frame = Array::new("<f8", &[2], &[8200.0, f64::NAN]);
+    let per_frame = Array::of("<f8", &[2], &[8200.0, f64::NAN]);
     assert_eq!(time(Some(per_frame), "{}"), [PerFrame(8200.0), Unknown]);
-    let per_pixel = Array::new(">u2", &[2, 1, 2], &[30.0, 5000.0, 0.0, 400.0]);
+    let per_pixel = Array::of(">u2", &[2, 1, 2], &[30.0, 5000.0, 0.0, 400.0]);
     let [PerPixel(first), PerPixel(second)] = time(Some(per_pixel), "{}") else { panic!("no maps") };
     assert_eq!((first.values(), second.values()), (&[30.0, 5000.0][..], &[0.0, 400.0][..]));
 }
@@ -118,7 +118,7 @@ const QUARTER: [f64; 4] = [200.0, 300.0, 200.0, 100.0];
 fn bins_in_order(order: [usize; 4]) -> Array {
     let mut values = [0.0; 4];
     order.iter().zip(QUARTER).for_each(|(&position, value)| values[position] = value);
-    Array::new("<u2", &[1, 4, 1, 1], &values)
+    Array::of("<u2", &[1, 4, 1, 1], &values)
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn amplitude_and_distance_come_from_the_bins_in_any_order_and_sign() {
 #[test]
 fn a_clipped_bin_saturates_its_pixel_even_where_the_amplitude_is_recorded() {
     let bins =
-        Array::new("<u2", &[1, 4, 1, 3], &[9.0, 9.0, 9.0, 9.0, 985.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 984.0]);
+        Array::of("<u2", &[1, 4, 1, 3], &[9.0, 9.0, 9.0, 9.0, 985.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 984.0]);
     let arrays = [("phase_samples", bins), ("amplitude", Array::counting("<f4", &[1, 1, 3]))];
     let folder = Folder::described(&arrays, r#"{"saturated_phase_sample": 1000}"#);
     let mut frame = Frame::new(Shape::new(1, 3));
@@ -167,14 +167,14 @@ fn a_clipped_bin_saturates_its_pixel_even_where_the_amplitude_is_recorded() {
 
 #[test]
 fn only_what_is_wanted_is_filled() {
-    let image = |start: f64| Array::new("|u1", &[2, 1, 2], &[start, start + 1.0, start + 2.0, start + 3.0]);
+    let image = |start: f64| Array::of("|u1", &[2, 1, 2], &[start, start + 1.0, start + 2.0, start + 3.0]);
     let folder = Folder::with(&[
         ("amplitude", image(1.0)),
         ("intensity", image(11.0)),
         ("target", image(2.0)),
         ("vendor_amplitude", image(21.0)),
         ("vendor_confidence", image(31.0)),
-        ("timestamp_us", Array::new("<i8", &[2], &[5.0, 6.0])),
+        ("timestamp_us", Array::of("<i8", &[2], &[5.0, 6.0])),
         ("world_from_camera", Array::counting("<f8", &[2, 4, 4])),
         ("phase_samples", Array::counting("<f4", &[2, 4, 1, 2])),
         ("ambient", image(41.0)),

@@ -86,7 +86,7 @@ fn reading_does_not_move_the_frames_memory() {
     let folder = Folder::with(&[
         ("amplitude", Array::counting("<u2", &[3, 8, 8])),
         ("distance", Array::counting("<u2", &[3, 8, 8])),
-        ("target", Array::new("|u1", &[3, 8, 8], &[1.0; 192])),
+        ("target", Array::of("|u1", &[3, 8, 8], &[1.0; 192])),
         ("integration_time_us", Array::counting("<f4", &[3, 8, 8])),
     ]);
     let mut recording = folder.open().unwrap();

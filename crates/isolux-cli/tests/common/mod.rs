@@ -2,6 +2,7 @@
 #![allow(dead_code, unused_imports, unreachable_pub, reason = "each test binary uses its own part")]
 
 mod calls;
+#[path = "../../../isolux-io/tests/common/npy.rs"]
 mod npy;
 mod readers;
 mod resources;

@@ -1,4 +1,4 @@
-//! `.npy` files made byte by byte, independently of the program's own writer.
+//! `.npy` files made byte by byte, independently of the crate's own writer. The command line's tests use them too.
 
 /// An array as NumPy would save it; the values are given in C order.
 #[derive(Clone, Debug)]
@@ -13,6 +13,18 @@ impl Array {
     pub fn new(descr: &str, dims: &[usize], values: Vec<f64>) -> Self {
         assert_eq!(values.len(), dims.iter().product::<usize>());
         Self { descr: descr.to_owned(), fortran: false, dims: dims.to_vec(), values }
+    }
+
+    /// Of these few values.
+    pub fn of(descr: &str, dims: &[usize], values: &[f64]) -> Self {
+        Self::new(descr, dims, values.to_vec())
+    }
+
+    /// Values 1, 2, 3, ... in C order.
+    pub fn counting(descr: &str, dims: &[usize]) -> Self {
+        let count = dims.iter().product();
+        let values: Vec<_> = (1..=count).map(|value: usize| value as f64).collect();
+        Self::new(descr, dims, values)
     }
 
     pub fn filled(descr: &str, dims: &[usize], value: f64) -> Self {
@@ -72,11 +84,15 @@ pub fn split(bytes: &[u8]) -> (String, Vec<u8>) {
 
 fn encode(descr: &str, value: f64) -> Vec<u8> {
     let little = match &descr[1..] {
+        "b1" => vec![u8::from(value != 0.0)],
         "u1" => (value as u8).to_le_bytes().to_vec(),
         "u2" => (value as u16).to_le_bytes().to_vec(),
         "u4" => (value as u32).to_le_bytes().to_vec(),
+        "u8" => (value as u64).to_le_bytes().to_vec(),
+        "i1" => (value as i8).to_le_bytes().to_vec(),
         "i2" => (value as i16).to_le_bytes().to_vec(),
         "i4" => (value as i32).to_le_bytes().to_vec(),
+        "i8" => (value as i64).to_le_bytes().to_vec(),
         "f4" => (value as f32).to_le_bytes().to_vec(),
         "f8" => value.to_le_bytes().to_vec(),
         other => panic!("no encoding for {other}"),
