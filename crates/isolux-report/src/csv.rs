@@ -30,7 +30,7 @@ fn lines<R: IntoIterator<Item = String>>(records: impl Iterator<Item = R>) -> St
         .from_writer(Vec::new());
     for record in records {
         // Memory takes all bytes, and a flexible writer records of any length: nothing can fail.
-        let _ = writer.write_record(record.into_iter());
+        let _ = writer.write_record(record);
     }
     let bytes = writer.into_inner().unwrap_or_default();
     String::from_utf8(bytes).unwrap_or_default()
