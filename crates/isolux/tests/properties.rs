@@ -9,7 +9,7 @@ use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::{ExposureSample, LutAnswer};
 use isolux::terms::{Cubic, Lut};
-use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape};
+use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Standardized};
 use proptest::prelude::*;
 
 fn scale(plane: &mut Plane<f32>, factor: f32) {

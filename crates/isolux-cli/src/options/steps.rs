@@ -105,8 +105,7 @@ where
 
 /// The same for a step that is a rule or nothing.
 fn denoise_steps() -> impl TypedValueParser<Value = DenoiseStep> {
-    let none =
-        PossibleValue::new(DenoiseStep::None.to_string()).help("Scale by the distance as it was delivered");
+    let none = PossibleValue::new("none").help("Scale by the distance as it was delivered");
     let rule = |rule: &DenoiseRule| PossibleValue::new(rule.name()).help(plain(rule.description()));
     let values: Vec<PossibleValue> = [none].into_iter().chain(DenoiseRule::ALL.iter().map(rule)).collect();
     PossibleValuesParser::new(values).try_map(|text| text.parse::<DenoiseStep>())

@@ -2,9 +2,7 @@
 //! distance, tilt and place, in frames that the calibration has not seen.
 
 use isolux::calibrate::{CalibrateSettings, ExposureFit, Measurements, TargetSweep, label_windows};
-use isolux::standardize::{
-    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep,
-};
+use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep};
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use isolux::{
     Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, RecordingTraits, Standardizer,

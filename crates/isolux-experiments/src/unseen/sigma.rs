@@ -4,7 +4,7 @@ use isolux::calibrate::NoiseSurvey;
 use isolux::evaluate::SigmaTally;
 use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep};
 use isolux::terms::NoiseModel;
-use isolux::{Channels, Choice, DenoiseRule, PixelFlags, Standardized, RecordingTraits, Standardizer};
+use isolux::{Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::held_out::{HeldOut, MEASURED};

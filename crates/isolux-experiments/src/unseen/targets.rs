@@ -7,11 +7,11 @@
 //! is usable where the camera delivers a value and its well compresses the amplitude by at most 2 %.
 
 use isolux::calibrate::{CalibrateSettings, ExposureFit, FitReport, Measurements, TargetSweep};
-use isolux::standardize::{
-    AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep,
-};
+use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep};
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
-use isolux::{Calibration, Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer};
+use isolux::{
+    Calibration, Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer,
+};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use crate::error::ExperimentError;

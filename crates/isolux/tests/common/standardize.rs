@@ -9,10 +9,7 @@ pub fn standardize(standardizer: &Standardizer, frame: &Frame) -> Standardized {
 }
 
 /// The same, where it may be refused.
-pub fn try_standardize(
-    standardizer: &Standardizer,
-    frame: &Frame,
-) -> Result<Standardized, StandardizeError> {
+pub fn try_standardize(standardizer: &Standardizer, frame: &Frame) -> Result<Standardized, StandardizeError> {
     next(&mut standardizer.stream(), frame)
 }
 

@@ -4,8 +4,6 @@ use std::path::Path;
 
 use isolux::{Channels, Frame};
 use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
-use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
-use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
 use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
 use isolux_io::Recording;
 use isolux_pipeline::diagnose;

@@ -1,7 +1,7 @@
 //! Noise that the distance brings into the amplitude.
 
-use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::Window;
+use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux_camera::{CameraModel, Scene, Simulation};
 use isolux_report::page::{Block, Chart, Claim, Scale, Series, Stroke, Table};
 
@@ -86,8 +86,7 @@ fn measure(lab: &Lab) -> Result<Vec<Noise>, ExperimentError> {
     let camera = window_camera(&lab.camera);
     let simulation = Simulation::new(camera, scene, lab.seed)?;
     let plan = |distance| lab.plan(TimeStep::None, distance, SpecularStep::None);
-    let (mut square, mut cubic) =
-        (plan(DistanceStep::Square)?.stream(), plan(DistanceStep::Cubic)?.stream());
+    let (mut square, mut cubic) = (plan(DistanceStep::Square)?.stream(), plan(DistanceStep::Cubic)?.stream());
     let mut found: Vec<Noise> = Vec::new();
     let mut sums = [Differences::default(), Differences::default(), Differences::default()];
     for_each(&simulation, |index, simulated| {

@@ -1,7 +1,7 @@
 //! Exposures of unseen cameras in the dark and in strong ambient light.
 
-use isolux::phase::CLIPPED_SHARE;
 use isolux::PixelFlags;
+use isolux::phase::CLIPPED_SHARE;
 use isolux_camera::{CameraModel, FullWell, Scene, SimulatedFrame, Simulation};
 
 use crate::error::ExperimentError;
@@ -14,7 +14,6 @@ pub enum Light {
     /// Several times the camera's own on everything beyond 1 m.
     StrongAmbient,
 }
-
 
 /// A random camera with fewer pixels of the same view.
 pub(super) fn camera_of(seed: u64) -> CameraModel {

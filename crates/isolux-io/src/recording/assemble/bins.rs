@@ -1,11 +1,10 @@
 //! Phase samples: brought into the paper's order and sign, and looked through for clipped ones.
 
-use isolux::{Channels, PhaseConvention, PixelFlags, Plane};
+use isolux::{Channels, PhaseConvention, PixelFlags, Plane, phase};
 
 use super::loaded::Loaded;
 use crate::error::RecordingError;
 use crate::recording::source::RawFrame;
-
 
 /// Reads the phase samples into `slot`, whose memory is reused; false where there are none.
 pub(super) fn read(loaded: &Loaded<'_>, slot: &mut Option<[Plane<f32>; 4]>) -> Result<bool, RecordingError> {
