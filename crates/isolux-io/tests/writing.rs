@@ -200,3 +200,34 @@ fn a_time_in_two_places_is_not_written() {
     let error = filled(&folder.join("out"), false).unwrap().finish(&info).unwrap_err();
     assert!(matches!(error, RecordingError::Write { .. }), "{error}");
 }
+
+#[test]
+fn frames_of_an_unknown_number_must_be_as_many_in_every_channel() {
+    let folder = Folder::new();
+    let start = || RecordingWriter::create(&folder.join("out"), None, specs(), false).unwrap();
+    let message = |writer: RecordingWriter| writer.finish(&camera("X")).unwrap_err().to_string();
+    let found = message(start());
+    assert!(found.contains("out`: 0 frames of 3 channels to be written, at least one of each"), "{found}");
+    let mut writer = start();
+    for frame in [1.0f32, 2.0] {
+        writer.push("amplitude", &[frame; 6]).unwrap();
+        writer.push("integration_time_us", &[f64::from(frame)]).unwrap();
+    }
+    writer.push("flags", &[PixelFlags::empty(); 6]).unwrap();
+    let found = message(writer);
+    assert!(
+        found.contains("out/flags`: 1 frames to be written, 2, as of the other channels expected"),
+        "{found}"
+    );
+    assert_eq!(folder.names(), [""; 0]);
+}
+
+#[test]
+fn the_output_has_the_permissions_of_any_other_folder() {
+    let folder = Folder::new();
+    fs::create_dir(folder.join("usual")).unwrap();
+    filled(&folder.join("out"), false).unwrap().finish(&camera("X")).unwrap();
+    let permissions = |name: &str| fs::metadata(folder.join(name)).unwrap().permissions();
+    assert_eq!(permissions("out"), permissions("usual"));
+    assert_eq!(permissions("out/amplitude.npy").readonly(), permissions("usual").readonly());
+}

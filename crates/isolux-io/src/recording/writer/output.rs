@@ -133,7 +133,10 @@ fn replace(folder: &Path, path: &Path) -> Result<(), RecordingError> {
     let old = aside.path().join("replaced");
     fs::rename(path, &old).map_err(RecordingError::io("replace", path))?;
     if let Err(error) = fs::rename(folder, path) {
-        let _ = fs::rename(&old, path);
+        if fs::rename(&old, path).is_err() {
+            // Whatever is the matter here, the old recording is not removed with the folder that it lies in.
+            let _ = aside.keep();
+        }
         return Err(create()(error));
     }
     fs::remove_dir_all(&old).map_err(RecordingError::io("remove", &old))
