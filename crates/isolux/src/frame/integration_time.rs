@@ -1,4 +1,4 @@
-//! When two integration times are one, and which time a pixel has.
+//! The integration time of a frame: which time a pixel has, and when two times count as one.
 
 use super::Plane;
 
@@ -15,8 +15,7 @@ pub enum IntegrationTime {
 }
 
 impl IntegrationTime {
-    /// Times less than this factor apart count as one: cameras report the time that was set, or one that they
-    /// measured, and these differ by parts in a thousand.
+    /// Times less than this factor apart count as one: cameras report them with jitter.
     pub const SAME_RATIO: f64 = 1.01;
 
     /// Time of a pixel, µs; `None` where it is unknown: not recorded, or no positive number.
