@@ -6,8 +6,8 @@ mod sections;
 
 use std::sync::OnceLock;
 
-use isolux::standardize::{Choice, Method};
-use isolux::{Channels, IntegrationTime, Standardized, Standardizer};
+use isolux::standardize::Choice;
+use isolux::{Channels, IntegrationTime, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 use isolux_report::page::{Section, Verdict};
 use sections::{chart, claim, lab, row, series, table};

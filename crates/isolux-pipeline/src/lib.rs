@@ -20,7 +20,7 @@
 //! use isolux::Choice;
 //! use isolux_camera::{CameraModel, Scene, Simulation};
 //! use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, standardize};
-//! use isolux_pipeline::{FrameSource, Observer, Remark, Work, plan};
+//! use isolux_pipeline::{Observer, Remark, Work, plan};
 //!
 //! /// Says on a terminal what goes on.
 //! struct Terminal;
@@ -41,8 +41,7 @@
 //! # let extras = isolux_pipeline::simulate::Extras::default();
 //! # isolux_pipeline::simulate::record(&simulation, extras, &folder.path().join("wall"), false, &Terminal)?;
 //! let mut recording = isolux_io::open(&folder.path().join("wall"))?;
-//! let traits = recording.facts().traits();
-//! let chain = plan(&Choice::default(), None, traits, &mut recording, &Terminal)?;
+//! let chain = plan(&Choice::default(), None, &mut recording, &Terminal)?;
 //! let mut sink = NativeSink::new(&folder.path().join("standardized"), false);
 //! let options = StandardizeOptions::default();
 //! let summary = standardize(&mut recording, &chain, &options, &mut sink, &Terminal)?;
@@ -73,7 +72,7 @@ pub use diagnose::diagnose;
 pub use error::PipelineError;
 pub use observer::{Observer, Unobserved, Work};
 pub use overview::{Overview, overview};
-pub use plan::plan;
+pub use plan::{plan, plan_with};
 pub use remark::{Remark, Severity};
 pub use source::{FrameSource, FramesInMemory, SourceFacts};
 pub use standardize::{NativeSink, StandardizeOptions, Summary, standardize};

@@ -11,13 +11,25 @@ use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
-/// Plans the chain for a recording with these traits: [`SourceFacts::traits`](crate::SourceFacts::traits), or what the
-/// user knows better. Where the standard deviation is required and nothing tells the noise, the recording
+/// Plans the chain for a recording. Where the standard deviation is required and nothing tells the noise, the recording
 /// is read once to estimate it. The observer is told the notes of the plan.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
 pub fn plan(
+    choice: &Choice,
+    calibration: Option<&Calibration>,
+    source: &mut dyn FrameSource,
+    observer: &dyn Observer,
+) -> Result<Standardizer, PipelineError> {
+    plan_with(choice, calibration, source.facts().traits(), source, observer)
+}
+
+/// The same for a recording of which the user knows better than it tells itself: `traits` are believed.
+///
+/// # Errors
+/// Those of [`plan`].
+pub fn plan_with(
     choice: &Choice,
     calibration: Option<&Calibration>,
     traits: RecordingTraits,

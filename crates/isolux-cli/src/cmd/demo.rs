@@ -9,8 +9,7 @@ use isolux::evaluate::Comparison;
 use isolux::{Calibration, Choice};
 use isolux_pipeline::assess::{Pixels, first_frames_at};
 use isolux_pipeline::{
-    AssessOptions, CalibrationPaths, FrameSource, NativeSink, StandardizeOptions, assess, page, plan,
-    standardize,
+    AssessOptions, CalibrationPaths, NativeSink, StandardizeOptions, assess, page, plan, standardize,
 };
 use isolux_report::page::{Page, Picture, Section};
 use serde_json::{Value, json};
@@ -180,8 +179,7 @@ impl Demo {
     /// Standardizes and evaluates one scene with the paper's method, and pictures it.
     fn show(&self, exhibit: &Exhibit, calibration: &Calibration) -> Outcome<(Comparison, Section)> {
         let mut input = isolux_io::open(&self.recording(exhibit.scene))?;
-        let standardizer =
-            plan(&Choice::paper(), Some(calibration), input.facts().traits(), &mut input, &self.observer)?;
+        let standardizer = plan(&Choice::paper(), Some(calibration), &mut input, &self.observer)?;
         let mut sink = NativeSink::new(&self.folder.join("standardized").join(exhibit.scene), false);
         let options = StandardizeOptions { calibration: Some(calibration), ..StandardizeOptions::default() };
         standardize(&mut input, &standardizer, &options, &mut sink, &self.observer)?;

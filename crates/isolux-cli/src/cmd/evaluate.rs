@@ -6,7 +6,7 @@ use isolux::{Calibration, Standardizer};
 use isolux_io::Recording;
 use isolux_pipeline::assess::Pixels;
 use isolux_pipeline::page::{page, pictures};
-use isolux_pipeline::{AssessOptions, Assessment, FrameSource, assess, plan};
+use isolux_pipeline::{AssessOptions, Assessment, FrameSource, assess, plan_with};
 use serde_json::json;
 
 use crate::evaluation::{figures_table, rivals_table};
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Outcome {
     let mut recording = isolux_io::open(&args.recording)?;
     let observer = Terminal::default();
     let (choice, traits) = (args.steps.choice()?, args.steps.traits(recording.facts().traits()));
-    let standardizer = plan(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
+    let standardizer = plan_with(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
     let options = AssessOptions {
         calibration: calibration.as_ref(),
         pixels: if args.trusted { Pixels::Trusted } else { Pixels::Valid },

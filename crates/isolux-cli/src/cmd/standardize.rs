@@ -1,7 +1,7 @@
 //! `isolux standardize`: a recording in, a standardized recording out.
 
 use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, step_json, steps};
-use isolux_pipeline::{Brackets, FrameSource, Summary, plan};
+use isolux_pipeline::{Brackets, FrameSource, Summary, plan_with};
 use serde_json::{Value, json};
 
 use crate::failure::Outcome;
@@ -16,7 +16,7 @@ pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     let mut recording = isolux_io::open(&args.recording)?;
     let observer = Terminal::default();
     let (choice, traits) = (args.steps.choice()?, args.steps.traits(recording.facts().traits()));
-    let standardizer = plan(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
+    let standardizer = plan_with(&choice, calibration.as_ref(), traits, &mut recording, &observer)?;
     let brackets = args.merge_bracket.map(|length| Brackets::plan(&mut recording, length, &observer));
     let brackets = brackets.transpose()?;
     let options = StandardizeOptions {
