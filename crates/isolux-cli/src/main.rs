@@ -1,5 +1,6 @@
 //! `isolux`: standardizes the amplitude images of time-of-flight cameras.
 
+mod advice;
 mod args;
 mod assessment;
 mod beside;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use isolux::calibrate::{
     CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureFit, ExposureSweep, FitReport,
-    Measurements, ReferenceDecays, TargetSweep, TargetWindows,
+    FitWarning, MeasureError, Measurements, ReferenceDecays, TargetSweep, TargetWindows,
 };
 use isolux::calibration::Terms;
 use isolux::terms::Response;
@@ -19,7 +19,7 @@ use isolux::{Calibration, Channels, Frame, Reference};
 use crate::args::CalibrateArgs;
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::{frames, output};
+use crate::{advice, frames, output};
 
 pub(crate) use describe::describe;
 use linear::Linear;
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         modulation_frequency_hz: None,
     };
     let (calibration, report) = fit(&settings, args.camera.clone(), inputs)?;
-    report.warnings.iter().for_each(console::warn);
+    report.warnings.iter().for_each(warn);
     if calibration.terms == Terms::default() {
         return Err(Failure::data(
             "no term could be fitted from these recordings, for the reasons above: no calibration is written",
@@ -96,23 +96,18 @@ pub(crate) fn fit(
     let mut cameras = Vec::new();
     let curves = exposure_sweeps.iter().map(|path| exposure_curve(path, &settings, &mut cameras));
     let exposure = ExposureFit::new(&settings, curves.collect::<Outcome<Vec<_>>>()?)
-        .inspect_err(|error| error.warnings().iter().for_each(console::warn))
-        .map_err(Failure::data)?;
+        .inspect_err(|error| error.warnings().iter().for_each(warn))
+        .map_err(|error| Failure::data(advice::with(&error, error.advice())))?;
     let mut measured = Measurements::default();
     for path in distance_sweeps {
         let (delivered, linear) = reference_decays(path, &settings, exposure.response(), &mut cameras)?;
-        measured.distance_sweeps.push(delivered);
-        measured.linear_distance_sweeps.extend(linear);
-    }
-    if measured.linear_distance_sweeps.len() < measured.distance_sweeps.len() {
-        // Some linear and some compressed: one law cannot be both.
-        measured.linear_distance_sweeps.clear();
+        measured.add_distance_sweep(delivered, linear);
     }
     for path in targets {
-        measured.targets.push(target_windows(path, &settings, exposure.response(), &mut cameras)?);
+        measured.add_target(target_windows(path, &settings, exposure.response(), &mut cameras)?);
     }
     for path in scenes {
-        measured.scenes.push(scenes::observations(path, &settings, exposure.response(), &mut cameras)?);
+        measured.add_scene(scenes::observations(path, &settings, exposure.response(), &mut cameras)?);
     }
     cameras.dedup();
     if camera.is_none() && cameras.len() > 1 {
@@ -122,17 +117,23 @@ pub(crate) fn fit(
         ));
     }
     let camera = camera.or_else(|| cameras.into_iter().next());
-    exposure.and(&settings, camera, measured).map_err(|error| {
-        error.warnings().iter().for_each(console::warn);
-        match error {
+    exposure.complete(camera, measured).map_err(|error| {
+        error.warnings().iter().for_each(warn);
+        let advised = match &error {
             // Pooled from all distance sweeps, so the error knows none of them.
             CalibrateError::Cubic { source, .. } => {
                 let names: Vec<_> = distance_sweeps.iter().map(|path| path.display().to_string()).collect();
-                Failure::data(format!("distance sweep `{}`: {source}", names.join("`, `")))
+                let found = format!("distance sweep `{}`: {source}", names.join("`, `"));
+                advice::with(found, source.advice())
             }
-            other => Failure::data(other),
-        }
+            other => advice::with(other, other.advice()),
+        };
+        Failure::data(advised)
     })
+}
+
+fn warn(warning: &FitWarning) {
+    console::warn(advice::with(warning, warning.advice()));
 }
 
 /// The frequency that all of these recordings name; one that does not leaves it open.
@@ -205,12 +206,15 @@ fn measure(
     what: &str,
     besides: Channels,
     cameras: &mut Vec<String>,
-    mut push: impl FnMut(&Frame) -> Result<(), CalibrateError>,
+    mut push: impl FnMut(&Frame) -> Result<(), MeasureError>,
 ) -> Outcome {
     let mut recording = isolux_io::open(path)?;
     cameras.extend(recording.metadata().info.camera.clone());
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
     frames::for_each(&mut *recording, wanted, what, |_, frame| {
-        push(frame).map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
+        push(frame).map_err(|error| {
+            let found = format!("`{}`: {error}", path.display());
+            Failure::data(advice::with(found, error.advice()))
+        })
     })
 }

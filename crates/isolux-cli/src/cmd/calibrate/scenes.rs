@@ -12,6 +12,7 @@ use isolux::terms::Response;
 use super::RESPONSE_CHANNELS;
 use super::findings::findings;
 use super::linear::Linear;
+use crate::advice;
 use crate::console::table;
 use crate::failure::{Failure, Outcome};
 use crate::frames;
@@ -38,7 +39,10 @@ pub(super) fn observations(
     let mut sweep = SceneSweep::new(path.display().to_string(), settings, intrinsics, scout.verdict());
     frames::for_each(&mut *recording, wanted | besides, "scene", |_, frame| {
         let pushed = linear.frame(frame).and_then(|frame| sweep.push(frame));
-        pushed.map_err(|error| Failure::data(format!("`{}`: {error}", path.display())))
+        pushed.map_err(|error| {
+            let found = format!("`{}`: {error}", path.display());
+            Failure::data(advice::with(found, error.advice()))
+        })
     })?;
     Ok(sweep.finish())
 }

@@ -35,7 +35,7 @@ impl Planner<'_> {
                 let spline = terms.and_then(|terms| terms.spline.as_ref());
                 let spline: &Spline = spline.ok_or_else(|| self.missing(term, "--distance-sweep"))?;
                 let (gain, table) = spline.gain();
-                (gain, Some(table), fitted(spline.valid_distance_m))
+                (gain, Some(table), fitted(spline.law.valid_distance_m))
             }
             DistanceStep::Cubic | DistanceStep::None => {
                 let cubic = terms.and_then(|terms| terms.cubic.as_ref());
