@@ -34,7 +34,7 @@ proptest! {
         let mut written = Calibration::new(camera, reference);
         written.terms = Terms { lut, response, cubic, spline, noise, ..Terms::default() };
         if let Some(spline) = & written.terms.spline {
-            written.reference.distance_m = spline.reference_distance_m;
+            written.reference.distance_m = spline.law.reference_distance_m;
         }
         written.noise_floor = floor.map(|(sd, time)| NoiseFloor::new(sd, time));
         written.warnings = warnings;

@@ -1,6 +1,6 @@
 //! What can go wrong in an experiment.
 
-use isolux::calibrate::CalibrateError;
+use isolux::calibrate::{CalibrateError, MeasureError};
 use isolux::standardize::{PlanError, StandardizeError};
 use isolux_camera::CameraError;
 
@@ -14,6 +14,9 @@ pub enum ExperimentError {
     /// The fits.
     #[error("calibration: {0}")]
     Calibrate(#[from] CalibrateError),
+    /// A frame of a sweep.
+    #[error("calibration: {0}")]
+    Measure(#[from] MeasureError),
     /// The chain.
     #[error("plan: {0}")]
     Plan(#[from] PlanError),

@@ -1,6 +1,6 @@
 //! What can go wrong between a recording and a result.
 
-use isolux::calibrate::{CalibrateError, FitWarning};
+use isolux::calibrate::{CalibrateError, FitWarning, MeasureError};
 use isolux::standardize::{MergeError, PlanError, StandardizeError};
 use isolux::{Advice, ShapeError};
 use isolux_camera::CameraError;
@@ -118,7 +118,7 @@ pub enum PipelineError {
         recording: String,
         /// Why.
         #[source]
-        cause: CalibrateError,
+        cause: MeasureError,
     },
     /// A calibration cannot be fitted from what was measured.
     #[error("{}", fit_text(distance_sweeps, cause))]
@@ -159,6 +159,10 @@ impl PipelineError {
             Self::Merge { .. } => Some(Advice::GiveOrEstimateNoise),
             Self::ChannelKept { .. } => Some(Advice::LeaveInputOut),
             Self::TimesRefused { .. } => Some(Advice::RecordCalibratedTimes),
+            Self::Plan(cause) => cause.advice(),
+            Self::Frame { cause: FrameError::Standardize(cause), .. } => cause.advice(),
+            Self::Measure { cause, .. } => cause.advice(),
+            Self::Fit { cause, .. } => cause.advice(),
             _ => None,
         }
     }

@@ -59,6 +59,7 @@ impl Remark {
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::CamerasDiffer { .. } => Some(Advice::NameCamera),
+            Self::Plan(note) => note.advice(),
             _ => None,
         }
     }

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::terms::{Angle, Cubic, Lut, Noise, ParameterError, Profile, Response, Spline, require};
+use crate::terms::check::{Check, ParameterError, Parameters, optional_term};
+use crate::terms::{Angle, Cubic, Lut, Noise, Profile, Response, Spline};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -132,42 +133,62 @@ impl Calibration {
     /// # Errors
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
+        Check::of("format").require(self.format == Self::FORMAT, &self.format, Self::FORMAT)?;
+        Check::of("version").require(self.version == Self::VERSION, self.version, "1")?;
+        self.reference.check_at(&Check::of("reference"))?;
+        self.noise_floor.map_or(Ok(()), |floor| floor.check_at(&Check::of("noise_floor")))?;
+        self.terms.check()?;
+        self.terms.check_against(&self.reference)
+    }
+}
+
+impl Reference {
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         // From a nanosecond to a quarter of an hour, from a tenth of a millimetre to 100 km: far beyond any camera.
         let (times_us, distances_m) = (1e-3..=1e9, 1e-4..=1e5);
-        require(self.format == Self::FORMAT, "format", &self.format, Self::FORMAT)?;
-        require(self.version == Self::VERSION, "version", self.version, "1")?;
-        let Reference { integration_time_us, distance_m } = self.reference;
-        let time = integration_time_us.unwrap_or(REFERENCE_TIME_US);
-        require(
+        let time = self.integration_time_us.unwrap_or(REFERENCE_TIME_US);
+        here.at("integration_time_us").require(
             times_us.contains(&time),
-            "reference.integration_time_us",
             time,
             "a time in µs, 1e-3 to 1e9",
         )?;
-        require(
-            distances_m.contains(&distance_m),
-            "reference.distance_m",
-            distance_m,
-            "a distance in m, 1e-4 to 1e5",
-        )?;
-        if let Some(floor) = self.noise_floor {
-            let fine = positive(floor.low_signal_below_dn) && positive(floor.amplitude_sd_dn);
-            require(fine, "noise_floor", floor.low_signal_below_dn, "positive numbers")?;
-        }
-        let needs_time = self.terms.lut.is_some() || self.terms.response.is_some();
-        let fine = !needs_time || integration_time_us.is_some();
-        require(fine, "reference.integration_time_us", "nothing", "the time that lut and response refer to")?;
-        self.terms.lut.as_ref().map_or(Ok(()), Lut::check)?;
-        self.terms.response.as_ref().map_or(Ok(()), Response::check)?;
-        self.terms.cubic.as_ref().map_or(Ok(()), Cubic::check)?;
-        self.terms.profile.as_ref().map_or(Ok(()), Profile::check)?;
-        self.terms.angle.as_ref().map_or(Ok(()), Angle::check)?;
-        self.terms.noise.as_ref().map_or(Ok(()), Noise::check)?;
-        let Some(spline) = &self.terms.spline else { return Ok(()) };
-        let gauge_m = spline.reference_distance_m;
-        require(gauge_m == distance_m, "spline.reference_distance_m", gauge_m, "reference.distance_m")?;
-        spline.check()
+        let distance_m = self.distance_m;
+        let fine = distances_m.contains(&distance_m);
+        here.at("distance_m").require(fine, distance_m, "a distance in m, 1e-4 to 1e5")
+    }
+}
+
+impl NoiseFloor {
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let fine = positive(self.low_signal_below_dn) && positive(self.amplitude_sd_dn);
+        here.require(fine, self.low_signal_below_dn, "positive numbers")
+    }
+}
+
+impl Terms {
+    /// Each term for itself.
+    fn check(&self) -> Result<(), ParameterError> {
+        let Self { lut, response, cubic, spline, profile, angle, noise } = self;
+        optional_term(lut)?;
+        optional_term(response)?;
+        optional_term(cubic)?;
+        optional_term(spline)?;
+        optional_term(profile)?;
+        optional_term(angle)?;
+        optional_term(noise)
+    }
+
+    /// What the terms refer to must be the calibration's reference.
+    fn check_against(&self, reference: &Reference) -> Result<(), ParameterError> {
+        let needs_time = self.lut.is_some() || self.response.is_some();
+        let fine = !needs_time || reference.integration_time_us.is_some();
+        let expected = "the time that lut and response refer to";
+        Check::of("reference").at("integration_time_us").require(fine, "nothing", expected)?;
+        let gauge_m = self.spline.as_ref().map(|spline| spline.law.reference_distance_m);
+        let fine = gauge_m.is_none_or(|gauge_m| gauge_m == reference.distance_m);
+        let found = gauge_m.unwrap_or_default();
+        Check::of(Spline::NAME).at("reference_distance_m").require(fine, found, "reference.distance_m")
     }
 }
 

@@ -8,6 +8,7 @@ use isolux::standardize::{
     AngleStep, DenoiseStep, DistanceStep, Prepared, SigmaStep, SpecularStep, TimeStep, Workspace,
 };
 use isolux::terms::noise::AmplitudeNoise;
+use isolux::terms::profile::{Map, Places};
 use isolux::terms::response::ResponseTier;
 use isolux::terms::{FitQuality, NoiseModel, Profile};
 use isolux::{
@@ -189,11 +190,11 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     };
     let profile = Profile {
         version: 1,
-        height: shape.height,
-        width: shape.width,
-        origin_px: [23.5, 31.5],
-        radial: [-0.5, 0.0],
-        tensor: vec![0.0; 48],
+        map: Map {
+            places: Places { shape, origin: [23.5, 31.5] },
+            radial: [-0.5, 0.0],
+            tensor: vec![0.0; 48],
+        },
         support: vec!["#".repeat(16); 12],
         fitted_on: Vec::new(),
         fit: FitQuality { points: 1, residual: 0.0, held_out_residual: None },

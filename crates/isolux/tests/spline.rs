@@ -142,13 +142,16 @@ fn the_spline_is_the_cameras_true_law_within_noise() {
         relative.hypot(2.0 * distance) / 1200f64.sqrt()
     };
     let dimmest = frames.iter().map(noise).fold(0.0, f64::max);
-    let [min, max] = spline.valid_distance_m;
+    let [min, max] = spline.law.valid_distance_m;
     let error = |step: u32| {
         let d = min * (max / min).powf(f64::from(step) / 200.0);
         (spline.ln_response(d) - model.distance_response(d, REFERENCE_M).ln()).abs()
     };
     let largest = (0..=200).map(error).fold(0.0, f64::max);
-    println!("largest error {largest:.2e}, noise of the dimmest mean {dimmest:.2e}, {:?}", spline.harmonic);
+    println!(
+        "largest error {largest:.2e}, noise of the dimmest mean {dimmest:.2e}, {:?}",
+        spline.law.harmonic
+    );
     assert!(largest < 5.0 * dimmest + SMOOTHING, "{largest:e} {dimmest:e}");
     assert!(5.0 * dimmest < 1.5e-2, "the proof is sharp: {dimmest:e}");
 }
@@ -182,7 +185,7 @@ fn every_pixel_is_scaled_by_the_law_and_flagged_outside_its_range() {
     let channels = Channels::AMPLITUDE | Channels::DISTANCE;
     let standardizer = Standardizer::plan(&choice, Some(&calibration), channels).unwrap();
     let out = common::standardize::standardize(&standardizer, &frame);
-    let [min_m, max_m] = spline.valid_distance_m.map(|end| end as f32);
+    let [min_m, max_m] = spline.law.valid_distance_m.map(|end| end as f32);
     let (mut inside, mut outside) = (0, 0);
     for (index, &d) in distances.values().iter().enumerate() {
         let expected = 100.0 * spline.multiplier(f64::from(d));

@@ -4,7 +4,7 @@ mod claims;
 mod curves;
 mod rician;
 
-use isolux::calibrate::FitWarning;
+use isolux::calibrate::{DistanceWarning, FitWarning};
 use isolux_report::page::{Block, Chart, Mark, MarkAxis, Scale, Section, Series, Stroke, Table};
 
 use super::parts::{axis, number, quote, text};
@@ -220,8 +220,10 @@ fn table(lab: &Lab, curves: &[Curve]) -> Result<Table, ExperimentError> {
 /// Why the shortest time is not in the pool, in the words of the calibration.
 fn why_left_out(lab: &Lab) -> String {
     let about_stray = |warning: &&FitWarning| match warning {
-        FitWarning::FewReliable { integration_time_us, .. }
-        | FitWarning::LowSignal { integration_time_us, .. } => *integration_time_us == Some(STRAY_US),
+        FitWarning::Distance(
+            DistanceWarning::FewReliable { integration_time_us, .. }
+            | DistanceWarning::LowSignal { integration_time_us, .. },
+        ) => *integration_time_us == Some(STRAY_US),
         _ => false,
     };
     let said = lab.report.warnings.iter().find(about_stray).map(ToString::to_string);

@@ -108,12 +108,12 @@ impl Lab {
     }
 }
 
-type Push<'a> = &'a mut dyn FnMut(&isolux::Frame) -> Result<(), calibrate::CalibrateError>;
+type Push<'a> = &'a mut dyn FnMut(&isolux::Frame) -> Result<(), calibrate::MeasureError>;
 
 impl WallSweep {
     fn measure(
         simulated: &Simulation,
-        mut push: impl FnMut(&isolux::Frame) -> Result<(), calibrate::CalibrateError>,
+        mut push: impl FnMut(&isolux::Frame) -> Result<(), calibrate::MeasureError>,
     ) -> Result<Self, ExperimentError> {
         let regions = regions(simulated.shape());
         let mut sweep = Self {
@@ -145,7 +145,7 @@ impl WallSweep {
 
 fn measure_board(
     simulated: &Simulation,
-    mut push: impl FnMut(&isolux::Frame) -> Result<(), calibrate::CalibrateError>,
+    mut push: impl FnMut(&isolux::Frame) -> Result<(), calibrate::MeasureError>,
 ) -> Result<Vec<BoardMean>, ExperimentError> {
     let window = Window::centred(simulated.shape(), WINDOW_PX);
     let centre = simulated.shape().width * (simulated.shape().height / 2) + simulated.shape().width / 2;

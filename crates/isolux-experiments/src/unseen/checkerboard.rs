@@ -110,8 +110,9 @@ fn calibrate_without(
     for (_, frame) in frames.iter().enumerate().filter(|(index, _)| index % FOLDS != fold) {
         sweep.push(frame)?;
     }
-    let measured = Measurements { targets: vec![sweep.finish()], ..Measurements::default() };
-    Ok(ExposureFit::new(&settings, Vec::new())?.and(&settings, None, measured)?.0)
+    let mut measured = Measurements::default();
+    measured.add_target(sweep.finish());
+    Ok(ExposureFit::new(&settings, Vec::new())?.complete(None, measured)?.0)
 }
 
 /// Indices of the windows of 5×5 pixels inside the squares, all of whose pixels are measured, far enough.

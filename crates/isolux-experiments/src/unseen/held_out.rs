@@ -60,13 +60,13 @@ impl HeldOut {
             }
             Ok(())
         })?;
-        let delivered = Measurements { distance_sweeps: vec![board.finish()], ..Measurements::default() };
-        let linear = lineariser.map(|_| linear_board.finish());
-        let measured =
-            Measurements { linear_distance_sweeps: linear.into_iter().collect(), ..delivered.clone() };
+        let board = board.finish();
+        let (mut delivered, mut measured) = (Measurements::default(), Measurements::default());
+        delivered.add_distance_sweep(board.clone(), None);
+        measured.add_distance_sweep(board, lineariser.map(|_| linear_board.finish()));
         let name = Some(model.name.clone());
-        let (from_amplitude, _) = exposure.clone().and(&settings, name.clone(), delivered)?;
-        let (calibration, _) = exposure.and(&settings, name, measured)?;
+        let (from_amplitude, _) = exposure.clone().complete(name.clone(), delivered)?;
+        let (calibration, _) = exposure.complete(name, measured)?;
         Ok(Self { model, calibration, from_amplitude })
     }
 }

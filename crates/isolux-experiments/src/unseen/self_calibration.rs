@@ -136,8 +136,9 @@ fn calibrate(
     frames.iter().try_for_each(|frame| sweep.push(frame))?;
     let seen = sweep.finish();
     let motion = seen.motion;
-    let measured = calibrate::Measurements { scenes: vec![seen], ..calibrate::Measurements::default() };
-    let (calibration, report) = ExposureFit::new(settings, Vec::new())?.and(settings, None, measured)?;
+    let mut measured = calibrate::Measurements::default();
+    measured.add_scene(seen);
+    let (calibration, report) = ExposureFit::new(settings, Vec::new())?.complete(None, measured)?;
     let warnings = report.warnings.iter().map(ToString::to_string).collect();
     let scene = report.scene.ok_or(ExperimentError::Scene { scene: "run", missing: "a report" })?;
     Ok((calibration, motion, scene, warnings))
@@ -157,10 +158,10 @@ fn time(calibration: &Calibration) -> Option<Deviation> {
 fn distance(calibration: &Calibration, camera: &CameraModel) -> Option<Deviation> {
     const STEPS: u32 = 40;
     let spline = calibration.terms.spline.as_ref()?;
-    let [min_m, max_m] = spline.valid_distance_m;
+    let [min_m, max_m] = spline.law.valid_distance_m;
     deviation((0..=STEPS).map(|step| {
         let distance_m = min_m * (max_m / min_m).powf(f64::from(step) / f64::from(STEPS));
-        let truth = camera.distance_response(distance_m, spline.reference_distance_m);
+        let truth = camera.distance_response(distance_m, spline.law.reference_distance_m);
         spline.ln_response(distance_m).exp() / truth - 1.0
     }))
 }

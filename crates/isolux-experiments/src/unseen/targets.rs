@@ -58,8 +58,9 @@ pub fn calibrate_random(seed: u64) -> Result<(Calibration, FitReport), Experimen
     };
     let mut sweep = TargetSweep::new(BOARD, &settings, Some(model.intrinsics));
     for_each(&simulation, |_, simulated| Ok(sweep.push(&simulated.frame)?))?;
-    let measured = Measurements { targets: vec![sweep.finish()], ..Measurements::default() };
-    Ok(ExposureFit::new(&settings, Vec::new())?.and(&settings, Some(model.name.clone()), measured)?)
+    let mut measured = Measurements::default();
+    measured.add_target(sweep.finish());
+    Ok(ExposureFit::new(&settings, Vec::new())?.complete(Some(model.name.clone()), measured)?)
 }
 
 /// Measures the patches before the random camera of this seed, with `calibration`, in every `step`-th frame of 135.

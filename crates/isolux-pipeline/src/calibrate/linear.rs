@@ -1,6 +1,6 @@
 //! Frames made linear before anything is fitted to them, where response and recording allow it.
 
-use isolux::calibrate::CalibrateError;
+use isolux::calibrate::MeasureError;
 use isolux::standardize::FrameLineariser;
 use isolux::terms::Response;
 use isolux::{Channels, Frame};
@@ -27,7 +27,7 @@ impl Linear {
     }
 
     /// `frame` made linear; as it is where that is not possible.
-    pub(super) fn frame<'a>(&'a mut self, frame: &'a Frame) -> Result<&'a Frame, CalibrateError> {
+    pub(super) fn frame<'a>(&'a mut self, frame: &'a Frame) -> Result<&'a Frame, MeasureError> {
         let Some((lineariser, linear)) = &mut self.0 else { return Ok(frame) };
         linear.clone_from(frame);
         lineariser.linearise(linear)?;

@@ -1,7 +1,7 @@
 //! Each kind of recording, measured frame by frame.
 
 use isolux::calibrate::{
-    CalibrateError, CalibrateSettings, DistanceSweep, ExposureCurve, ExposureSweep, MotionScout,
+    CalibrateSettings, DistanceSweep, ExposureCurve, ExposureSweep, MeasureError, MotionScout,
     ReferenceDecays, SceneObservations, SceneSweep, TargetSweep, TargetWindows,
 };
 use isolux::terms::Response;
@@ -103,7 +103,7 @@ impl Measurer<'_> {
         source: &mut dyn FrameSource,
         work: Work,
         besides: Channels,
-        mut push: impl FnMut(&Frame) -> Result<(), CalibrateError>,
+        mut push: impl FnMut(&Frame) -> Result<(), MeasureError>,
     ) -> Result<(), PipelineError> {
         let recording = source.facts().name;
         frames::for_each(source, MEASURED_CHANNELS | besides, work, self.observer, |_, frame| {

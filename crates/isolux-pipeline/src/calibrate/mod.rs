@@ -86,7 +86,6 @@ pub fn calibrate(
 /// What recordings show, before the last fits.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    settings: CalibrateSettings,
     exposure: ExposureFit,
     measurements: Measurements,
     /// Names of the cameras, each run of equal ones once.
@@ -123,22 +122,17 @@ pub fn measure(
     let mut measurements = Measurements::default();
     for mut source in distance_sweeps {
         let (delivered, linear) = measurer.reference_decays(&mut *source, exposure.response())?;
-        measurements.distance_sweeps.push(delivered);
-        measurements.linear_distance_sweeps.extend(linear);
-    }
-    if measurements.linear_distance_sweeps.len() < measurements.distance_sweeps.len() {
-        // Some linear and some compressed: one law cannot be both.
-        measurements.linear_distance_sweeps.clear();
+        measurements.add_distance_sweep(delivered, linear);
     }
     for mut source in targets {
-        measurements.targets.push(measurer.target_windows(&mut *source, exposure.response())?);
+        measurements.add_target(measurer.target_windows(&mut *source, exposure.response())?);
     }
     for mut source in scenes {
-        measurements.scenes.push(measurer.scene_observations(&mut *source, exposure.response())?);
+        measurements.add_scene(measurer.scene_observations(&mut *source, exposure.response())?);
     }
     let mut cameras = measurer.cameras;
     cameras.dedup();
-    Ok(Measured { settings, exposure, measurements, cameras, distance_sweeps: distance_sweep_names })
+    Ok(Measured { exposure, measurements, cameras, distance_sweeps: distance_sweep_names })
 }
 
 impl Measured {
@@ -156,7 +150,7 @@ impl Measured {
             observer.remark(Remark::CamerasDiffer { cameras: self.cameras.clone() });
         }
         let camera = camera.or_else(|| self.cameras.into_iter().next());
-        let fitted = self.exposure.and(&self.settings, camera, self.measurements);
+        let fitted = self.exposure.complete(camera, self.measurements);
         fitted.map_err(fit_error(&self.distance_sweeps))
     }
 
@@ -164,9 +158,8 @@ impl Measured {
     /// were delivered, none of them made linear.
     #[must_use]
     pub fn of_delivered_amplitudes(&self) -> Self {
-        let mut measured = self.clone();
-        measured.measurements.linear_distance_sweeps.clear();
-        measured
+        let measurements = self.measurements.clone().of_delivered_amplitudes();
+        Self { measurements, ..self.clone() }
     }
 
     /// What was measured of distance sweeps, targets and scenes.

@@ -1,57 +1,32 @@
 //! From measurements to terms, in two stages: what the integration time does, then everything that is fitted to linear
 //! amplitudes.
 
-use super::{
-    CalibrateError, CalibrateSettings, ExposureCurve, FitWarning, NoiseCells, ReferenceDecays,
-    SceneObservations, SceneReport, TargetReport, TargetWindows, response, scene, target, warning,
-};
+use super::distance::{self, DistanceFit, ReferenceDecays};
+use super::exposure::{self, ExposureCurve, TableError};
+use super::measurements::DistanceSweeps;
+use super::{CalibrateError, CalibrateSettings, FitReport, FitWarning, Measurements, scene, target};
 use crate::calibration::Calibration;
-use crate::terms::cubic::{Decay, DecayUse};
-use crate::terms::lut::{ExposureSample, LutAnswer};
-use crate::terms::spline::SplineUse;
-use crate::terms::{Cubic, Lut, Response, Spline};
+use crate::terms::Response;
 
-/// What the fits found, for the user to judge them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FitReport {
-    /// Exposure samples of each exposure sweep.
-    pub exposure_curves: Vec<ExposureCurve>,
-    /// Reference decays as they entered the cubic, with what became of them.
-    pub decays: Vec<(Decay, DecayUse)>,
-    /// What became of the decays that the spline was fitted on; empty where there is none.
-    pub spline_uses: Vec<SplineUse>,
-    /// What the fit of targets found.
-    pub target: Option<TargetReport>,
-    /// What the fit of scenes found.
-    pub scene: Option<SceneReport>,
-    /// Everything that the user should know or record better, also in the calibration's terms.
-    pub warnings: Vec<FitWarning>,
-}
-
-/// Measured recordings of what the time does not tell, by what they are.
-#[derive(Clone, Debug, Default)]
-pub struct Measurements {
-    /// A flat target at several distances, as it was delivered: the paper's cubic is fitted on it.
-    pub distance_sweeps: Vec<ReferenceDecays>,
-    /// The same sweeps after [`FrameLineariser`](crate::standardize::FrameLineariser), where the response allows it: the
-    /// spline is then fitted on these.
-    pub linear_distance_sweeps: Vec<ReferenceDecays>,
-    /// Labelled targets in any pose, linear where the response allows it.
-    pub targets: Vec<TargetWindows>,
-    /// Ordinary recordings.
-    pub scenes: Vec<SceneObservations>,
-}
-
-/// What exposure sweeps determine: the first stage of a calibration, since whatever is fitted after it needs the
-/// response to be linear.
+/// The first stage of a calibration: what exposure sweeps determine. Whatever is fitted after it needs the response, to
+/// make its frames linear.
+///
+/// 1. Measure the exposure sweeps, [`ExposureSweep`](super::ExposureSweep), and fit them: [`ExposureFit::new`].
+/// 2. With [`ExposureFit::response`], make the frames of all other recordings linear, where their channels allow it
+///    ([`FrameLineariser`](crate::standardize::FrameLineariser)): amplitudes that grow in proportion to the light. Measure
+///    distance sweeps of frames as they were delivered *and* of linear ones; targets and scenes of linear ones, or of
+///    those delivered where there are none. Collect them in [`Measurements`].
+/// 3. Fit the other terms: [`ExposureFit::complete`].
 #[derive(Clone, Debug)]
 pub struct ExposureFit {
+    settings: CalibrateSettings,
     calibration: Calibration,
     curves: Vec<ExposureCurve>,
     warnings: Vec<FitWarning>,
 }
 
-/// Fits every term that the sweeps determine.
+/// Fits every term that exposure sweeps and distance sweeps of frames as they were delivered determine: both stages at
+/// once.
 ///
 /// # Errors
 /// [`CalibrateError`] when no sweep is given or a term cannot be fitted from what is there.
@@ -61,8 +36,9 @@ pub fn fit(
     exposure_curves: Vec<ExposureCurve>,
     distance_sweeps: Vec<ReferenceDecays>,
 ) -> Result<(Calibration, FitReport), CalibrateError> {
-    let measured = Measurements { distance_sweeps, ..Measurements::default() };
-    ExposureFit::new(settings, exposure_curves)?.and(settings, camera, measured)
+    let mut measured = Measurements::default();
+    distance_sweeps.into_iter().for_each(|sweep| measured.add_distance_sweep(sweep, None));
+    ExposureFit::new(settings, exposure_curves)?.complete(camera, measured)
 }
 
 impl ExposureFit {
@@ -72,23 +48,21 @@ impl ExposureFit {
     /// [`CalibrateError::Lut`] when a sweep has no table.
     pub fn new(settings: &CalibrateSettings, curves: Vec<ExposureCurve>) -> Result<Self, CalibrateError> {
         let mut calibration = Calibration::new(None, settings.reference);
-        let mut warnings = Vec::new();
-        if curves.is_empty() {
+        let warnings = if curves.is_empty() {
             // Nothing says what the amplitudes of another time would be.
             calibration.reference.integration_time_us = None;
-            return Ok(Self { calibration, curves, warnings });
-        }
-        let lut = fit_lut(settings, &curves, &mut warnings)?;
-        calibration.terms.response = response::fit_response(settings, &curves, &lut, &mut warnings);
-        calibration.terms.lut = Some(lut);
-        let floors = curves.iter().filter_map(|curve| curve.noise_floor);
-        calibration.noise_floor =
-            floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
-        let sources = curves.iter().map(|curve| curve.source.clone()).collect();
-        // A wall's texture would pass for noise.
-        let repeated = curves.iter().map(|curve| &curve.noise).filter(|noise| !noise.spatial);
-        calibration.terms.noise = NoiseCells::merged(repeated).fit(sources);
-        Ok(Self { calibration, curves, warnings })
+            Vec::new()
+        } else {
+            exposure::fit(settings, &curves, &mut calibration)
+                .map_err(|TableError { recording, source, warnings }| {
+                    let warnings = warnings.into_iter().map(FitWarning::Exposure).collect();
+                    CalibrateError::Lut { recording, source, warnings }
+                })?
+                .into_iter()
+                .map(FitWarning::Exposure)
+                .collect()
+        };
+        Ok(Self { settings: settings.clone(), calibration, curves, warnings })
     }
 
     /// The response that was fitted.
@@ -101,17 +75,14 @@ impl ExposureFit {
     ///
     /// # Errors
     /// [`CalibrateError`] when no recording is given or a term cannot be fitted from what is there.
-    pub fn and(
+    pub fn complete(
         self,
-        settings: &CalibrateSettings,
         camera: Option<String>,
         measured: Measurements,
     ) -> Result<(Calibration, FitReport), CalibrateError> {
-        let Self { mut calibration, curves, warnings } = self;
+        let Self { settings, mut calibration, curves, warnings } = self;
         calibration.camera = camera;
-        let Measurements { distance_sweeps, linear_distance_sweeps, targets, scenes } = measured;
-        let sweeps = curves.len() + distance_sweeps.len();
-        if sweeps + targets.len() + scenes.len() == 0 {
+        if curves.is_empty() && measured.is_empty() {
             return Err(CalibrateError::NothingToFit);
         }
         let mut report = FitReport {
@@ -122,119 +93,37 @@ impl ExposureFit {
             scene: None,
             warnings,
         };
-        if !distance_sweeps.is_empty() {
-            fit_distance(settings, distance_sweeps, linear_distance_sweeps, &mut calibration, &mut report)?;
+        let (distances, targets, scenes) = measured.into_parts();
+        if !distances.delivered.is_empty() {
+            fit_distances(&settings, distances, &mut calibration, &mut report)?;
         }
         if !targets.is_empty() {
-            let found = target::fit(settings, &targets, &mut calibration, &mut report.warnings)?;
+            let (found, warnings) = target::fit(&settings, &targets, &mut calibration)?;
             report.target = Some(found);
+            report.warnings.extend(warnings.into_iter().map(FitWarning::Target));
         }
         if !scenes.is_empty() {
-            report.scene = Some(scene::fit(settings, &scenes, &mut calibration, &mut report.warnings)?);
+            let (found, warnings) =
+                scene::fit(&settings, &scenes, &mut calibration).map_err(CalibrateError::SceneShapes)?;
+            report.scene = Some(found);
+            report.warnings.extend(warnings.into_iter().map(FitWarning::Scene));
         }
         Ok((calibration, report))
     }
 }
 
-/// One table per sweep, then their geometric mean. Sweeps at unlike walls differ by a factor, which the normalization
-/// at the reference time takes out, and in their compression, which shows in the residual.
-fn fit_lut(
+fn fit_distances(
     settings: &CalibrateSettings,
-    curves: &[ExposureCurve],
-    warnings: &mut Vec<FitWarning>,
-) -> Result<Lut, CalibrateError> {
-    let reference_us =
-        settings.reference.integration_time_us.unwrap_or(crate::calibration::REFERENCE_TIME_US);
-    let mut tables = Vec::new();
-    for curve in curves {
-        let lut = Lut::fit(&curve.samples, reference_us).map_err(|source| {
-            let warnings = curve.warnings.clone();
-            CalibrateError::Lut { recording: curve.source.recording.clone(), source, warnings }
-        })?;
-        warnings.extend(curve.warnings_for(&lut));
-        tables.push(lut);
-    }
-    let mut lut = match tables.as_slice() {
-        [single] => single.clone(),
-        several => {
-            let merged = merge_samples(several);
-            Lut::fit(&merged, reference_us).map_err(|source| {
-                let warnings = warnings.clone();
-                CalibrateError::Lut { recording: "(all together)".into(), source, warnings }
-            })?
-        }
-    };
-    lut.fitted_on = curves.iter().map(|curve| curve.source.clone()).collect();
-    lut.warnings = warnings.iter().map(ToString::to_string).collect();
-    Ok(lut)
-}
-
-/// Mean curve of several tables, 1 at the reference, at all their times that every one of them covers. Each is
-/// interpolated there, so that sweeps over unlike times do not take turns.
-fn merge_samples(tables: &[Lut]) -> Vec<ExposureSample> {
-    let mut times: Vec<f64> = tables.iter().flat_map(|lut| lut.integration_time_us.iter().copied()).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let sample = |integration_time_us: f64| {
-        let logs: Option<Vec<f64>> = tables
-            .iter()
-            .map(|lut| match lut.at(integration_time_us) {
-                LutAnswer::Inside(multiplier) => Some(-multiplier.ln()),
-                LutAnswer::Below(_) | LutAnswer::Refused => None,
-            })
-            .collect();
-        let logs = logs?;
-        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-        let spread = crate::terms::root_mean_square(logs.iter().map(|log| log - mean)).unwrap_or(0.0);
-        Some(ExposureSample { integration_time_us, mean_amplitude_dn: mean.exp(), frame_spread: spread })
-    };
-    times.into_iter().filter_map(sample).collect()
-}
-
-/// Cubic and spline of the same sweeps, the spline of the linear decays where there are any. A spline that cannot be
-/// fitted is a warning: the cubic is there.
-fn fit_distance(
-    settings: &CalibrateSettings,
-    sweeps: Vec<ReferenceDecays>,
-    linear_sweeps: Vec<ReferenceDecays>,
+    DistanceSweeps { delivered, linear }: DistanceSweeps,
     calibration: &mut Calibration,
     report: &mut FitReport,
 ) -> Result<(), CalibrateError> {
-    let mut found = Vec::new();
-    let (mut sources, mut decays) = (Vec::new(), Vec::new());
-    for sweep in sweeps {
-        found.extend(sweep.warnings);
-        sources.push(sweep.source);
-        decays.extend(sweep.decays);
-    }
-    let reference_m = settings.reference.distance_m;
-    let (mut cubic, uses) = Cubic::fit(&decays, reference_m)
-        .map_err(|source| CalibrateError::Cubic { source, warnings: found.clone() })?;
-    let words = |warnings: &[FitWarning]| warnings.iter().map(ToString::to_string).collect();
-    let about_sweeps = found.len();
-    found.extend(warning::about_decays(&decays, &uses));
-    cubic.warnings = words(&found);
-    cubic.fitted_on.clone_from(&sources);
-    let mut linear = Vec::new();
-    for sweep in linear_sweeps {
-        let new = sweep.warnings.into_iter().filter(|warning| !found.contains(warning)).collect::<Vec<_>>();
-        found.extend(new);
-        linear.extend(sweep.decays);
-    }
-    let smooth = if linear.is_empty() { &decays } else { &linear };
-    match Spline::fit(smooth, reference_m, settings.modulation_frequency_hz) {
-        Ok((mut spline, uses)) => {
-            let outliers = warning::about_outliers(smooth, &uses);
-            spline.warnings = words(&found[..about_sweeps]);
-            spline.warnings.extend::<Vec<String>>(words(&outliers));
-            spline.fitted_on = sources;
-            found.extend(outliers);
-            (calibration.terms.spline, report.spline_uses) = (Some(spline), uses);
-        }
-        Err(reason) => found.push(FitWarning::NoSpline { reason }),
-    }
-    calibration.terms.cubic = Some(cubic);
-    report.warnings.extend(found);
-    report.decays = decays.into_iter().zip(uses).collect();
+    let fitted = distance::fit(settings, delivered, linear, calibration);
+    let DistanceFit { decays, spline_uses, warnings } = fitted.map_err(|(source, warnings)| {
+        let warnings = warnings.into_iter().map(FitWarning::Distance).collect();
+        CalibrateError::Cubic { source, warnings }
+    })?;
+    (report.decays, report.spline_uses) = (decays, spline_uses);
+    report.warnings.extend(warnings.into_iter().map(FitWarning::Distance));
     Ok(())
 }

@@ -6,7 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitQuality, ParameterError, Source, require};
+use super::check::{Check, ParameterError, Parameters};
+use super::{FitQuality, Source};
 
 /// Least cosine that is corrected for: 78°.
 pub const LEAST_COSINE: f64 = 0.2;
@@ -44,15 +45,24 @@ impl Angle {
     /// # Errors
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
-        require(self.version == Self::VERSION, "angle.version", self.version, "1")?;
+        self.check_at(&Check::of(Self::NAME))
+    }
+}
+
+impl Parameters for Angle {
+    const NAME: &'static str = "angle";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        here.version(self.version, Self::VERSION)?;
         let fine = self.exponent.abs() <= Self::LARGEST_EXPONENT;
-        require(fine, "angle.exponent", self.exponent, "a number from -16 to 16")?;
+        here.at("exponent").require(fine, self.exponent, "a number from -16 to 16")?;
         let error = self.standard_error;
-        require(error >= 0.0 && error.is_finite(), "angle.standard_error", error, "0 or more")?;
+        here.at("standard_error").require(error >= 0.0 && error.is_finite(), error, "0 or more")?;
         let [least, greatest] = self.valid_cosine;
         let fine = 0.0 < least && least < greatest && greatest <= 1.0;
-        let found = format!("{least}..{greatest}");
-        require(fine, "angle.valid_cosine", found, "two increasing cosines, above 0 and at most 1")
+        let (found, expected) =
+            (format!("{least}..{greatest}"), "two increasing cosines, above 0 and at most 1");
+        here.at("valid_cosine").require(fine, found, expected)
     }
 }
 

@@ -1,5 +1,5 @@
-//! The correction terms, one file each: model, fit and parameters together. A term has one name, in code, in
-//! the calibration file and on the command line.
+//! The correction terms, one file or folder each: parameters, what they do, and how they are fitted. A term has one
+//! name, in code and in the calibration file.
 
 pub mod angle;
 pub mod cubic;
@@ -12,11 +12,13 @@ pub mod response;
 pub mod spline;
 pub mod square;
 
+pub(crate) mod check;
 mod distance_law;
 mod polynomial;
 mod table;
 
 pub use angle::Angle;
+pub use check::ParameterError;
 pub use cubic::Cubic;
 pub use distance_law::DistanceLaw;
 pub use lut::Lut;
@@ -54,30 +56,8 @@ pub struct FitQuality {
     pub held_out_residual: Option<f64>,
 }
 
-/// A range check that a versioned parameter set failed when read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{field}: {found}; {expected} expected")]
-pub struct ParameterError {
-    /// Field of the calibration file.
-    pub field: &'static str,
-    /// What stands there.
-    pub found: String,
-    /// What should.
-    pub expected: &'static str,
-}
-
 /// Multipliers beyond these limits turn any amplitude into nothing or infinity; no fit gives them.
 pub(crate) const MULTIPLIER_LIMITS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
-
-/// Refuses `found` in `field` unless it is `fine`.
-pub(crate) fn require(
-    fine: bool,
-    field: &'static str,
-    found: impl std::fmt::Display,
-    expected: &'static str,
-) -> Result<(), ParameterError> {
-    if fine { Ok(()) } else { Err(ParameterError { field, found: found.to_string(), expected }) }
-}
 
 /// Root mean square of `values`; `None` when there are none.
 pub(crate) fn root_mean_square(values: impl IntoIterator<Item = f64>) -> Option<f64> {

@@ -7,7 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitQuality, ParameterError, Source, require};
+use super::check::{Check, ParameterError, Parameters};
+use super::{FitQuality, Source};
 
 mod fit;
 
@@ -80,8 +81,16 @@ impl Noise {
     /// # Errors
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
-        require(self.version == Self::VERSION, "noise.version", self.version, "1")?;
-        self.model().check()
+        self.check_at(&Check::of(Self::NAME))
+    }
+}
+
+impl Parameters for Noise {
+    const NAME: &'static str = "noise";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        here.version(self.version, Self::VERSION)?;
+        self.model().check_at(here)
     }
 }
 
@@ -94,19 +103,23 @@ impl NoiseModel {
     /// # Errors
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
-        let expected = "variances from 0 to 1e12, not all of them 0";
+        self.check_at(&Check::of(Noise::NAME))
+    }
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         let AmplitudeNoise { read_variance_dn2, shot_variance_dn2_per_dn, ambient_variance_dn2_per_us } =
             self.by_amplitude;
         let numbers = [read_variance_dn2, shot_variance_dn2_per_dn, ambient_variance_dn2_per_us];
-        let fine = numbers.iter().all(|number| (0.0..=Self::LARGEST).contains(number));
-        let found = format!("{numbers:?}");
-        require(fine && numbers.iter().sum::<f64>() > 0.0, "noise.by_amplitude", found, expected)?;
+        check_variances(&here.at("by_amplitude"), &numbers)?;
         let Some(IntensityNoise { read_variance_dn2, shot_variance_dn2_per_dn }) = self.by_intensity else {
             return Ok(());
         };
-        let numbers = [read_variance_dn2, shot_variance_dn2_per_dn];
-        let fine = numbers.iter().all(|number| (0.0..=Self::LARGEST).contains(number));
-        let found = format!("{numbers:?}");
-        require(fine && numbers.iter().sum::<f64>() > 0.0, "noise.by_intensity", found, expected)
+        check_variances(&here.at("by_intensity"), &[read_variance_dn2, shot_variance_dn2_per_dn])
     }
+}
+
+fn check_variances(here: &Check<'_>, numbers: &[f64]) -> Result<(), ParameterError> {
+    let fine = numbers.iter().all(|number| (0.0..=NoiseModel::LARGEST).contains(number));
+    let expected = "variances from 0 to 1e12, not all of them 0";
+    here.require(fine && numbers.iter().sum::<f64>() > 0.0, format!("{numbers:?}"), expected)
 }

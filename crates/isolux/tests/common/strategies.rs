@@ -6,7 +6,7 @@ use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::ExposureSample;
 use isolux::terms::noise::{AmplitudeNoise, IntensityNoise, Noise};
 use isolux::terms::response::{FullWell, PhaseSampleResponse, PixelResponse, Response};
-use isolux::terms::spline::Harmonic;
+use isolux::terms::spline::{Harmonic, Law};
 use isolux::terms::{Cubic, FitQuality, Lut, Source, Spline};
 use isolux::{
     Calibration, Channels, Choice, Frame, IntegrationTime, PixelFlags, Plane, Reference, Shape, SpecularRule,
@@ -205,11 +205,13 @@ pub fn splines() -> impl Strategy<Value = Spline> {
     (numbers, range, 0.0..1.0f64, sources(), quality(), words()).prop_map(
         |((coefficients, harmonic), (min, at, span), curvature_weight, fitted_on, fit, warnings)| Spline {
             version: Spline::VERSION,
-            reference_distance_m: min + at * span,
-            valid_distance_m: [min, min + span],
-            coefficients,
-            harmonic,
-            curvature_weight,
+            law: Law {
+                reference_distance_m: min + at * span,
+                valid_distance_m: [min, min + span],
+                coefficients,
+                harmonic,
+                curvature_weight,
+            },
             fitted_on,
             fit,
             warnings,

@@ -37,7 +37,7 @@ pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String 
         if !report.spline_uses.is_empty() {
             text.push(spline_use_table(report));
         }
-        let [min, max] = spline.valid_distance_m;
+        let [min, max] = spline.law.valid_distance_m;
         text.push(format!("valid from {min:.3} to {max:.3} m; {}", harmonic(spline)));
     }
     if let Some(profile) = &calibration.terms.profile {
@@ -158,12 +158,12 @@ fn decay_table(report: &FitReport) -> String {
 /// The multiplier, and what it is beside the inverse square, at nine distances.
 fn spline_table(spline: &Spline) -> String {
     const STEPS: u32 = 8;
-    let [min_m, max_m] = spline.valid_distance_m;
+    let [min_m, max_m] = spline.law.valid_distance_m;
     let mut rows = vec![["  d in m", "1/h(d)", "beside (d/d_ref)²"].map(str::to_owned).to_vec()];
     rows.extend((0..=STEPS).map(|step| {
         let distance_m = min_m * (max_m / min_m).powf(f64::from(step) / f64::from(STEPS));
         let multiplier = spline.multiplier(distance_m);
-        let beside = multiplier / (distance_m / spline.reference_distance_m).powi(2) - 1.0;
+        let beside = multiplier / (distance_m / spline.law.reference_distance_m).powi(2) - 1.0;
         vec![format!("  {distance_m:.3}"), format!("{multiplier:.4}"), format!("{:+.2} %", 100.0 * beside)]
     }));
     table(&rows)
@@ -184,7 +184,7 @@ fn spline_use_table(report: &FitReport) -> String {
 }
 
 fn harmonic(spline: &Spline) -> String {
-    spline.harmonic.map_or_else(
+    spline.law.harmonic.map_or_else(
         || "no harmonic".to_owned(),
         |harmonic| {
             let (percent, mhz) =

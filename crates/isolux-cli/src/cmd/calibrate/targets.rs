@@ -10,17 +10,17 @@ use crate::terminal::table;
 pub(super) fn profile(profile: &Profile) -> String {
     let places = profile.places();
     let thirds = |pixels: usize| [0.05, 0.5, 0.95].map(|share| share * (pixels as f64 - 1.0));
-    let rows = thirds(profile.height).map(|row| {
+    let rows = thirds(profile.shape().height).map(|row| {
         let value = |column: f64| {
             let place = places.at(row, column);
             let mark = if profile.supports(place) { "" } else { " (not seen)" };
             format!("  {:.3}{mark}", profile.ln_gain(place).exp())
         };
-        thirds(profile.width).map(value).to_vec()
+        thirds(profile.shape().width).map(value).to_vec()
     });
     let cells: usize = profile.support.iter().map(|row| row.matches('#').count()).sum();
     let all = profile.support.len() * profile.support.first().map_or(0, String::len);
-    let [row, column] = profile.origin_px;
+    let [row, column] = profile.places().origin;
     format!(
         "{}\nfor images of {}, 1 at row {row:.1}, column {column:.1}; seen in {:.0} % of the image",
         table(&rows),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::{AngleModel, JointModel, LAW_CURVATURE, Observation, PROFILE_CURVATURE};
+use super::model::{AngleModel, JointModel, LAW_CURVATURE, Observation, PROFILE_CURVATURE};
 use crate::numerics::bspline::Basis;
 use crate::terms::profile::{RADIAL, Surface};
 use crate::terms::spline::Harmonic;

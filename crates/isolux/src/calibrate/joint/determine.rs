@@ -8,160 +8,17 @@
 //! - How much do ln d and ln cosθ vary that the other factors cannot take up? Both are measured, with errors of a
 //!   few percent, and a slope over little else than those errors comes out too small.
 
-use std::fmt;
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::columns::{Columns, Row};
+use super::factor::Factor;
+use super::finding::Finding;
 use super::problem::Problem;
+use super::refusal::Refusal;
 use super::robust::{Robust, factorize};
 use crate::terms::profile::Places;
-
-/// A factor of the joint model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Factor {
-    /// s, over the integration times.
-    Time,
-    /// h, over the distance.
-    Distance,
-    /// v, over the image.
-    Profile,
-    /// k, the exponent of cosθ.
-    Angle,
-}
-
-/// What the observations know of one factor.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// Which factor.
-    pub factor: Factor,
-    /// Predicted standard error of its curve in ln, root mean square over its support. For k, of its effect at 60°.
-    pub standard_error: f64,
-    /// That error over the one it would have were the other factors known: 1 or more. Its condition.
-    pub inflation: f64,
-    /// Standard deviation, within surfaces, of ln d or ln cosθ that no other factor can take up; `None` for time and
-    /// profile, whose abscissas have no errors.
-    pub free_spread: Option<f64>,
-    /// Why it is not given out; `None` where it is determined.
-    pub refusal: Option<Refusal>,
-}
-
-/// Why a factor is not determined.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Refusal {
-    /// What it depends on hardly changes within any surface.
-    NotSeen {
-        /// Which factor.
-        factor: Factor,
-    },
-    /// It cannot be told from others.
-    Confounded {
-        /// Which factor.
-        factor: Factor,
-        /// With these.
-        with: Vec<Factor>,
-        /// By how much the others' being unknown multiplies its error.
-        inflation: f64,
-    },
-    /// The observations are too few or too noisy.
-    Uncertain {
-        /// Which factor.
-        factor: Factor,
-        /// Predicted standard error of its curve.
-        standard_error: f64,
-    },
-}
-
-impl Finding {
-    /// Largest standard error of a curve that is given out.
-    pub const LARGEST_ERROR: f64 = 0.05;
-    /// Largest inflation.
-    pub const LARGEST_INFLATION: f64 = 30.0;
-    /// Least free standard deviation of ln d: ten times the errors of usual distances.
-    pub const LEAST_SPREAD_LN_DISTANCE: f64 = 0.05;
-    /// Least free standard deviation of ln cosθ: twice the errors of normals by plane fits.
-    pub const LEAST_SPREAD_LN_COSINE: f64 = 0.03;
-}
-
-impl Factor {
-    const ALL: [Self; 4] = [Self::Time, Self::Distance, Self::Profile, Self::Angle];
-
-    /// In words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "integration time",
-            Self::Distance => "distance law",
-            Self::Profile => "illumination profile",
-            Self::Angle => "angle exponent",
-        }
-    }
-
-    fn least_spread(self) -> Option<f64> {
-        match self {
-            Self::Distance => Some(Finding::LEAST_SPREAD_LN_DISTANCE),
-            Self::Angle => Some(Finding::LEAST_SPREAD_LN_COSINE),
-            Self::Time | Self::Profile => None,
-        }
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotSeen { factor } => f.write_str(match factor {
-                Factor::Time => "integration time: no surface is seen at more than one",
-                Factor::Distance => {
-                    "distance law: no surface is seen at distances that are unlike enough; record one material from \
-                     near to far"
-                }
-                Factor::Profile => {
-                    "illumination profile: no surface is seen at unlike places of the image; let a target wander \
-                     through it"
-                }
-                Factor::Angle => {
-                    "angle exponent: no surface is seen at angles that are unlike enough; tilt the target by up to 60°"
-                }
-            }),
-            Self::Confounded { factor, with, inflation } => {
-                let others: Vec<&str> = with.iter().map(|other| other.name()).collect();
-                write!(
-                    f,
-                    "{}: cannot be told from the {} (its error grows {inflation:.0}-fold){}",
-                    factor.name(),
-                    others.join(" and the "),
-                    advice(*factor, with)
-                )
-            }
-            Self::Uncertain { factor, standard_error } => write!(
-                f,
-                "{}: its standard error of {:.1} % is above {:.0} %; record more frames, or brighter ones",
-                factor.name(),
-                100.0 * standard_error,
-                100.0 * Finding::LARGEST_ERROR
-            ),
-        }
-    }
-}
-
-fn advice(factor: Factor, with: &[Factor]) -> &'static str {
-    let among = |one: Factor| factor == one || with.contains(&one);
-    match (among(Factor::Profile), among(Factor::Angle), among(Factor::Distance), among(Factor::Time)) {
-        (true, true, false, _) => {
-            ": the target faced the camera in all frames, or was always tilted alike where it was seen; tilt it"
-        }
-        (true, _, true, _) => {
-            ": each place of the image saw one distance; move the target nearer and farther"
-        }
-        (_, true, true, _) => ": the target was tilted by its distance; vary the two apart",
-        (_, _, true, true) => {
-            ": each distance was recorded with its own integration time; vary the two apart"
-        }
-        _ => "",
-    }
-}
 
 /// The findings on every factor that was fitted, and the standard error of ln v in each cell that was seen.
 pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec<Option<f64>>) {

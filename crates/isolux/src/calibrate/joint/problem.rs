@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::columns::Columns;
-use super::{AngleModel, JointError, JointModel, Observation};
+use super::model::{AngleModel, JointError, JointModel, Observation};
 
 /// Largest number of integration times.
 const MOST_TIMES: usize = 1024;

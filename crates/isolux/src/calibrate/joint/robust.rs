@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::JointError;
+use super::model::JointError;
 use super::problem::{Normal, Problem};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};

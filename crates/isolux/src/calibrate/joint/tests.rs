@@ -103,7 +103,7 @@ fn profile_deviation(fit: &JointFit) -> f64 {
     let profile = fit.profile.as_ref().unwrap();
     let deviation = |(cell, error): (usize, &Option<f64>)| {
         let place = places().cell_centre(cell);
-        error.map(|error| ((profile.ln_gain(place) - ln_profile(place)) / error).abs())
+        error.map(|error| ((profile.map.ln_gain(place) - ln_profile(place)) / error).abs())
     };
     profile.cell_errors.iter().enumerate().filter_map(deviation).fold(0.0, f64::max)
 }
@@ -114,7 +114,9 @@ fn errors(fit: &JointFit) -> [f64; 3] {
         |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, |worst: f64, e| worst.max(e.abs()));
     let profile = fit.profile.as_ref().map_or(f64::NAN, |profile| {
         let seen = (0..profile.cell_errors.len()).filter(|&cell| profile.cell_errors[cell].is_some());
-        largest(&mut seen.map(|cell| places().cell_centre(cell)).map(|p| profile.ln_gain(p) - ln_profile(p)))
+        largest(
+            &mut seen.map(|cell| places().cell_centre(cell)).map(|p| profile.map.ln_gain(p) - ln_profile(p)),
+        )
     });
     let distance = fit.distance.as_ref().map_or(f64::NAN, |law| {
         let [min_m, max_m] = law.valid_distance_m;

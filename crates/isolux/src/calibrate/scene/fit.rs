@@ -2,63 +2,54 @@
 //!
 //! What sweeps and targets have fitted stays: they know their surfaces. Scenes fill in what is absent.
 
-use super::lambert;
+use super::joint_input::JointInput;
 use super::report::{SceneReport, SceneUse};
-use super::rows::Rows;
-use super::{MotionFinding, SceneObservations};
-use crate::calibrate::factors::{Fitted, held_out};
+use super::{MotionFinding, SceneObservations, SceneWarning, lambert};
+use crate::calibrate::CalibrateSettings;
+use crate::calibrate::exposure::{ExposureCurve, MissingTier, fit_response};
+use crate::calibrate::factor_terms::{FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{Factor, JointError, JointFit, JointModel};
-use crate::calibrate::{CalibrateError, CalibrateSettings, ExposureCurve, FitWarning, response};
-use crate::calibration::{Calibration, REFERENCE_TIME_US};
-use crate::terms::lut::ExposureSample;
+use crate::calibrate::measure_error::{UnlikeShapes, common_shape};
+use crate::calibration::Calibration;
+use crate::terms::lut::{LutError, RelativeSample};
 use crate::terms::{FitQuality, Lut};
 
 /// One frame in five is left out once, for the held-out residual: scenes have observations enough.
 const HELD_OUT_FOLDS: std::ops::Range<u32> = 2..3;
 
 /// Fits the terms that the scenes determine, and that are absent, into `calibration`. Whatever was left out, and why,
-/// goes to `warnings`.
+/// comes with the report.
 ///
 /// # Errors
-/// [`CalibrateError::SceneShape`] when the recordings have unlike formats.
+/// [`UnlikeShapes`] when the recordings have unlike formats.
 pub(in crate::calibrate) fn fit(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
     calibration: &mut Calibration,
-    warnings: &mut Vec<FitWarning>,
-) -> Result<SceneReport, CalibrateError> {
-    check_shapes(scenes)?;
-    let about_scenes = warnings.len();
-    warn(scenes, warnings);
-    let (rows, fit) = match solve(settings, scenes) {
-        Ok((rows, Ok(fit))) => (rows, fit),
-        Ok((_, Err(reason))) => {
-            warnings.push(FitWarning::NothingFromScenes { reason });
-            return Ok(SceneReport::nothing(scenes));
-        }
+) -> Result<(SceneReport, Vec<SceneWarning>), UnlikeShapes> {
+    common_shape(used(scenes).map(|scene| (&*scene.source.recording, scene.shape)))?;
+    let mut warnings = about(scenes);
+    let (input, fit) = match solve(settings, scenes) {
+        Ok(solved) => solved,
         Err(warning) => {
             warnings.push(warning);
-            return Ok(SceneReport::nothing(scenes));
+            return Ok((SceneReport::nothing(scenes), warnings));
         }
     };
-    for finding in &fit.findings {
-        if let Some(reason) = finding.refusal.clone() {
-            let (of, unknowns, rank) = ("scenes", fit.unknowns, fit.rank);
-            warnings.push(FitWarning::FactorRefused { of, reason, unknowns, rank });
-        }
-    }
+    let factors = fit.findings.iter().map(|finding| finding.factor);
+    let refused = factors.filter_map(|factor| FactorWarning::refused(&fit, factor));
+    warnings.extend(refused.map(SceneWarning::Factor));
     let fitted = Fitted {
-        of: "scenes",
-        observations: &rows.observations,
+        observations: &input.observations,
         fit: &fit,
-        held_out_residual: held_out(&rows.observations, &rows.frames, &fit.model, HELD_OUT_FOLDS),
-        reference_m: settings.reference.distance_m,
+        held_out_residual: held_out(&input.observations, &input.frames, &fit.model, HELD_OUT_FOLDS),
         fitted_on: used(scenes).map(|scene| scene.source.clone()).collect(),
-        warnings: warnings[about_scenes..].iter().map(ToString::to_string).collect(),
+        warnings: warnings.iter().map(ToString::to_string).collect(),
     };
-    write(settings, &rows, &fitted, calibration, warnings);
-    fit_response(settings, scenes, calibration, warnings);
-    Ok(SceneReport {
+    write(settings, &input, &fitted, calibration, &mut warnings);
+    let missing = fill_in_response(settings, scenes, calibration);
+    warnings.extend(missing.into_iter().map(SceneWarning::NoTier));
+    let report = SceneReport {
         scenes: scenes.iter().map(SceneUse::of).collect(),
         observations: fit.residuals.iter().filter(|residual| residual.is_finite()).count(),
         surfaces: fit.surfaces,
@@ -68,40 +59,44 @@ pub(in crate::calibrate) fn fit(
         rank: fit.rank,
         held_out_residual: fitted.held_out_residual,
         findings: fit.findings.clone(),
-    })
+    };
+    Ok((report, warnings))
 }
 
-/// The rows and their fit; a warning where there is nothing that could be fitted.
+/// The observations and their fit; a warning where there is nothing that could be fitted.
 fn solve(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
-) -> Result<(Rows, Result<JointFit, JointError>), FitWarning> {
-    let rows = Rows::new(settings, scenes);
-    let rows =
-        rows.ok_or(FitWarning::NothingFromScenes { reason: JointError::TooFew { found: 0, expected: 2 } })?;
-    let JointModel { time, distance, profile, .. } = rows.model;
+) -> Result<(JointInput, JointFit), SceneWarning> {
+    let nothing = |reason: JointError| SceneWarning::NothingFitted { reason };
+    let input = JointInput::new(settings, scenes)
+        .ok_or_else(|| nothing(JointError::TooFew { found: 0, expected: 2 }))?;
+    let JointModel { time, distance, profile, .. } = input.model;
     if time.is_none() && distance.is_none() && profile.is_none() {
-        return Err(FitWarning::NothingVaries);
+        return Err(SceneWarning::NothingVaries);
     }
-    let fit = lambert::settle(&rows);
-    Ok((rows, fit))
+    let fit = lambert::settle(&input).map_err(nothing)?;
+    Ok((input, fit))
 }
 
 /// The compression of the pixels, from still scenes at several times, where no sweep has told it.
-fn fit_response(
+fn fill_in_response(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
     calibration: &mut Calibration,
-    warnings: &mut Vec<FitWarning>,
-) {
+) -> Vec<MissingTier> {
     if calibration.terms.response.is_some() {
-        return;
+        return Vec::new();
     }
     let several = |curve: &&ExposureCurve| curve.samples.len() > 1;
     let curves: Vec<ExposureCurve> =
         scenes.iter().filter_map(|scene| scene.exposure.as_ref()).filter(several).cloned().collect();
-    let Some(lut) = calibration.terms.lut.as_ref().filter(|_| !curves.is_empty()) else { return };
-    calibration.terms.response = response::fit_response(settings, &curves, lut, warnings);
+    let Some(lut) = calibration.terms.lut.as_ref().filter(|_| !curves.is_empty()) else {
+        return Vec::new();
+    };
+    let (response, missing) = fit_response(settings, &curves, lut);
+    calibration.terms.response = response;
+    missing
 }
 
 /// Share of the weighted observations that the fit has rejected.
@@ -116,69 +111,62 @@ fn used(scenes: &[SceneObservations]) -> impl Iterator<Item = &SceneObservations
     scenes.iter().filter(|scene| !scene.observations.is_empty())
 }
 
-fn check_shapes(scenes: &[SceneObservations]) -> Result<(), CalibrateError> {
-    let Some(first) = used(scenes).next() else { return Ok(()) };
-    let Some(other) = used(scenes).find(|scene| scene.shape != first.shape) else { return Ok(()) };
-    let expected = format!("{}, as in {}", first.shape, first.source.recording);
-    let (recording, found) = (other.source.recording.clone(), other.shape.to_string());
-    Err(CalibrateError::SceneShape { recording, found, expected })
-}
-
-fn warn(scenes: &[SceneObservations], warnings: &mut Vec<FitWarning>) {
-    for scene in scenes {
+/// What is odd about single recordings.
+fn about(scenes: &[SceneObservations]) -> Vec<SceneWarning> {
+    let warning = |scene: &SceneObservations| {
         let recording = scene.source.recording.clone();
         match &scene.motion {
             MotionFinding::Refused(reason) => {
-                warnings.push(FitWarning::MotionRefused { recording, reason: *reason });
+                Some(SceneWarning::MotionRefused { recording, reason: *reason })
             }
-            _ if scene.observations.is_empty() => warnings.push(FitWarning::SceneUseless { recording }),
-            _ => {}
+            _ if scene.observations.is_empty() => Some(SceneWarning::Useless { recording }),
+            _ => None,
         }
-    }
+    };
+    scenes.iter().filter_map(warning).collect()
 }
 
 /// Writes what is determined and absent.
 fn write(
     settings: &CalibrateSettings,
-    rows: &Rows,
+    input: &JointInput,
     fitted: &Fitted<'_>,
     calibration: &mut Calibration,
-    warnings: &mut Vec<FitWarning>,
+    warnings: &mut Vec<SceneWarning>,
 ) {
-    let mut put = Put { warnings };
-    if let Some(lut) = lut(settings, rows, fitted, put.warnings)
-        && put.at("lut", &mut calibration.terms.lut, Some(lut))
-    {
+    let terms = &mut calibration.terms;
+    let lut = lut(settings, input, fitted).unwrap_or_else(|reason| {
+        warnings.push(SceneWarning::NoTable { reason });
+        None
+    });
+    if fill_in("lut", &mut terms.lut, lut, warnings) {
         calibration.reference.integration_time_us = settings.reference.integration_time_us;
     }
-    match fitted.spline() {
-        Ok(spline) => {
-            put.at("spline", &mut calibration.terms.spline, spline);
+    let spline = fitted.spline().unwrap_or_else(|warning| {
+        warnings.push(SceneWarning::Factor(warning));
+        None
+    });
+    fill_in("spline", &mut terms.spline, spline, warnings);
+    fill_in("profile", &mut terms.profile, fitted.profile(), warnings);
+    fill_in("angle", &mut terms.angle, fitted.angle(), warnings);
+}
+
+/// Puts what was `found` into an empty `place`, and tells whether it did; a term that is there stays.
+fn fill_in<T>(
+    term: &'static str,
+    place: &mut Option<T>,
+    found: Option<T>,
+    warnings: &mut Vec<SceneWarning>,
+) -> bool {
+    match (place.is_some(), found) {
+        (_, None) => false,
+        (true, Some(_)) => {
+            warnings.push(SceneWarning::TermKept { term });
+            false
         }
-        Err(warning) => put.warnings.push(warning),
-    }
-    put.at("profile", &mut calibration.terms.profile, fitted.profile());
-    put.at("angle", &mut calibration.terms.angle, fitted.angle());
-}
-
-/// Puts terms where none are.
-struct Put<'a> {
-    warnings: &'a mut Vec<FitWarning>,
-}
-
-impl Put<'_> {
-    /// True when the term was put.
-    fn at<T>(&mut self, term: &'static str, place: &mut Option<T>, found: Option<T>) -> bool {
-        match (place.is_some(), found) {
-            (_, None) => false,
-            (true, Some(_)) => {
-                self.warnings.push(FitWarning::TermKept { term });
-                false
-            }
-            (false, found) => {
-                *place = found;
-                true
-            }
+        (false, found) => {
+            *place = found;
+            true
         }
     }
 }
@@ -187,28 +175,19 @@ impl Put<'_> {
 /// mean of an image.
 fn lut(
     settings: &CalibrateSettings,
-    rows: &Rows,
+    input: &JointInput,
     fitted: &Fitted<'_>,
-    warnings: &mut Vec<FitWarning>,
-) -> Option<Lut> {
-    let ln_time = fitted.fit.ln_time.as_ref()?;
-    let finding = fitted.fit.findings.iter().find(|finding| finding.factor == Factor::Time)?;
-    let sample = |(time_us, s): (&f64, &f64)| ExposureSample {
-        integration_time_us: *time_us,
-        mean_amplitude_dn: s.exp(),
-        frame_spread: finding.standard_error,
+) -> Result<Option<Lut>, LutError> {
+    let finding = fitted.fit.findings.iter().find(|finding| finding.factor == Factor::Time);
+    let Some((ln_time, finding)) = fitted.fit.ln_time.as_ref().zip(finding) else { return Ok(None) };
+    let sample = |(&integration_time_us, s): (&f64, &f64)| RelativeSample {
+        integration_time_us,
+        relative_amplitude: s.exp(),
+        spread: finding.standard_error,
     };
-    let samples: Vec<ExposureSample> = rows.times_us.iter().zip(ln_time).map(sample).collect();
-    let reference_us = settings.reference.integration_time_us.unwrap_or(REFERENCE_TIME_US);
-    match Lut::fit(&samples, reference_us) {
-        Ok(lut) => {
-            let (fitted_on, warnings) = (fitted.fitted_on.clone(), fitted.warnings.clone());
-            let fit = FitQuality { points: lut.fit.points, ..fitted.quality() };
-            Some(Lut { fit, fitted_on, warnings, ..lut })
-        }
-        Err(reason) => {
-            warnings.push(FitWarning::NoTable { reason });
-            None
-        }
-    }
+    let samples: Vec<RelativeSample> = input.times_us.iter().zip(ln_time).map(sample).collect();
+    let lut = Lut::of_curve(&samples, settings.reference_time_us())?;
+    let fit = FitQuality { points: lut.fit.points, ..fitted.quality() };
+    let lut = Lut { fit, ..lut };
+    Ok(Some(lut.with_origin(fitted.fitted_on.clone(), fitted.warnings.clone())))
 }

@@ -4,7 +4,7 @@
 //! noise of the normals feigns an exponent, and with it a profile. So the exponent is held instead, at two values: a
 //! factor that differs between them is confounded with it.
 
-use super::rows::Rows;
+use super::joint_input::JointInput;
 use crate::calibrate::joint::{self, AngleModel, Factor, Finding, JointError, JointFit, JointModel, Refusal};
 use crate::terms::angle::LAMBERT;
 use crate::terms::profile::Places;
@@ -13,9 +13,9 @@ use crate::terms::root_mean_square;
 /// A factor that changes by more than this in ln (root mean square) when the exponent changes by 1 is not told.
 const LARGEST_CHANGE: f64 = 0.02;
 
-/// Fits the rows. Where the exponent is refused, it is held at Lambert's 1, and what hangs on it is refused too.
-pub(super) fn settle(rows: &Rows) -> Result<JointFit, JointError> {
-    let free = joint::solve(&rows.observations, &rows.model)?;
+/// Fits the input. Where the exponent is refused, it is held at Lambert's 1, and what hangs on it is refused too.
+pub(super) fn settle(input: &JointInput) -> Result<JointFit, JointError> {
+    let free = joint::solve(&input.observations, &input.model)?;
     let Some(finding) = free.findings.iter().find(|finding| finding.factor == Factor::Angle) else {
         return Ok(free);
     };
@@ -23,8 +23,8 @@ pub(super) fn settle(rows: &Rows) -> Result<JointFit, JointError> {
         return Ok(free);
     }
     let held = |exponent: f64| {
-        let model = JointModel { angle: AngleModel::Fixed(exponent), ..rows.model };
-        joint::solve(&rows.observations, &model)
+        let model = JointModel { angle: AngleModel::Fixed(exponent), ..input.model };
+        joint::solve(&input.observations, &model)
     };
     let (mut fit, other) = (held(LAMBERT)?, held(LAMBERT - 1.0)?);
     for (factor, change) in
@@ -64,7 +64,7 @@ fn profile_change(fit: &JointFit, other: &JointFit) -> Option<f64> {
     let (profile, other) = (fit.profile.as_ref()?, other.profile.as_ref()?);
     let cells = (0..Places::CELLS[0] * Places::CELLS[1]).filter(|&cell| profile.cell_errors[cell].is_some());
     root_mean_square(cells.map(|cell| {
-        let place = profile.places.cell_centre(cell);
-        profile.ln_gain(place) - other.ln_gain(place)
+        let place = profile.map.places.cell_centre(cell);
+        profile.map.ln_gain(place) - other.map.ln_gain(place)
     }))
 }

@@ -1,13 +1,13 @@
 //! How the camera moved: as recorded, not at all, or as the surfaces tell.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use super::align::{Lost, align};
+use super::obstacle::{MotionObstacle, MotionRefusal};
 use super::rigid::Rigid;
 use super::surfaces::Surfaces;
 use super::view::View;
-use crate::calibrate::CalibrateError;
+use crate::calibrate::MeasureError;
 use crate::frame::Frame;
 
 /// Where the poses come from.
@@ -51,63 +51,6 @@ pub struct Travel {
     pub turned_deg: f64,
 }
 
-/// Why the motion could not be estimated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionRefusal {
-    /// Frames that could be aligned.
-    pub aligned: usize,
-    /// All frames.
-    pub frames: usize,
-    /// What stood against most of the others.
-    pub reason: MotionObstacle,
-}
-
-/// What stands against an alignment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum MotionObstacle {
-    /// Too few surfaces of earlier frames were in sight.
-    TooFewSurfaces {
-        /// Number found.
-        found: usize,
-    },
-    /// The surfaces let the camera slide along them.
-    Slides {
-        /// Root mean square of the surfaces' resistance to the easiest motion; 1 where all face it.
-        hold: f64,
-    },
-    /// The surfaces do not fit any one motion.
-    Disagrees {
-        /// Scatter about their places, in expected standard errors.
-        residual: f64,
-        /// Share of the surfaces that agree, 0..=1.
-        agreeing: f64,
-    },
-}
-
-impl fmt::Display for MotionRefusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { aligned, frames, reason } = self;
-        write!(f, "the camera's motion cannot be estimated (only {aligned} of {frames} frames aligned): ")?;
-        match reason {
-            MotionObstacle::TooFewSurfaces { found } => {
-                write!(f, "{found} surfaces of earlier frames in sight; move more slowly, with more light")
-            }
-            MotionObstacle::Slides { hold } => write!(
-                f,
-                "the surfaces let the camera slide along them (hold {hold:.3}): a single plane or a ball; show a \
-                 corner of a room, or record the poses"
-            ),
-            MotionObstacle::Disagrees { residual, agreeing } => write!(
-                f,
-                "surfaces scatter by {residual:.1}σ about their places, {:.0} % agree; move more slowly, let nothing \
-                 else move, or record the poses",
-                100.0 * agreeing
-            ),
-        }
-    }
-}
-
 /// Share of the frames that may be lost.
 const LOST_SHARE: f64 = 0.5;
 
@@ -144,12 +87,12 @@ impl Path {
         frame: &Frame,
         view: &View,
         surfaces: &mut Surfaces,
-    ) -> Result<Option<Rigid>, CalibrateError> {
+    ) -> Result<Option<Rigid>, MeasureError> {
         let pose = match self.motion {
             CameraMotion::Still => Some(Rigid::identity()),
             CameraMotion::Recorded => {
-                let rows = frame.world_from_camera.ok_or(CalibrateError::NoPose { frame: number })?;
-                Some(Rigid::from_rows(&rows).ok_or(CalibrateError::NotRigid { frame: number })?)
+                let rows = frame.world_from_camera.ok_or(MeasureError::NoPose { frame: number })?;
+                Some(Rigid::from_rows(&rows).ok_or(MeasureError::NotRigid { frame: number })?)
             }
             CameraMotion::Estimated => self.estimate(view, surfaces),
         };
@@ -198,47 +141,12 @@ impl Path {
             CameraMotion::Estimated => {
                 let (aligned, lost) = (self.poses.len(), self.lost.len());
                 if lost as f64 > LOST_SHARE * (aligned + lost) as f64 {
-                    let reason = self.obstacle();
+                    let reason = MotionObstacle::most_frequent(&self.lost);
                     return MotionFinding::Refused(MotionRefusal { aligned, frames: aligned + lost, reason });
                 }
                 let residual = crate::numerics::statistics::median(&mut self.scales.clone()).unwrap_or(0.0);
                 MotionFinding::Estimated { travel: self.travel(), frames_lost: lost, residual }
             }
-        }
-    }
-
-    /// The obstacle met most often, at its median.
-    fn obstacle(&self) -> MotionObstacle {
-        let middle = |pick: &dyn Fn(&Lost) -> Option<f64>| {
-            let mut values: Vec<f64> = self.lost.iter().filter_map(pick).collect();
-            let count = values.len();
-            crate::numerics::statistics::median(&mut values).map(|value| (count, value))
-        };
-        let unknown = middle(&|lost| match lost {
-            Lost::Unknown { surfaces } => Some(*surfaces as f64),
-            _ => None,
-        });
-        let slides = middle(&|lost| match lost {
-            Lost::Slides { hold } => Some(*hold),
-            _ => None,
-        });
-        let disagrees = middle(&|lost| match lost {
-            Lost::Disagrees { scale, .. } => Some(*scale),
-            _ => None,
-        });
-        let agreeing = middle(&|lost| match lost {
-            Lost::Disagrees { agreeing, .. } => Some(*agreeing),
-            _ => None,
-        });
-        let count = |found: &Option<(usize, f64)>| found.map_or(0, |(count, _)| count);
-        match (slides, disagrees) {
-            (Some((most, hold)), _) if most >= count(&disagrees).max(count(&unknown)) => {
-                MotionObstacle::Slides { hold }
-            }
-            (_, Some((most, residual))) if most >= count(&unknown) => {
-                MotionObstacle::Disagrees { residual, agreeing: agreeing.map_or(0.0, |(_, share)| share) }
-            }
-            _ => MotionObstacle::TooFewSurfaces { found: unknown.map_or(0.0, |(_, found)| found) as usize },
         }
     }
 

@@ -2,11 +2,14 @@
 
 use nalgebra::{Rotation3, Vector3};
 
+use super::rigid::Rigid;
 use super::*;
 use crate::calibrate::joint::Factor;
-use crate::calibrate::{ExposureFit, FitReport, FitWarning, Measurements};
+use crate::calibrate::{CalibrateSettings, ExposureFit, FitReport, FitWarning, Measurements};
 use crate::calibration::{Calibration, Reference};
-use crate::frame::IntegrationTime;
+use crate::frame::Intrinsics;
+use crate::frame::Shape;
+use crate::frame::{Frame, IntegrationTime};
 use crate::numerics::hash::splitmix64;
 use crate::terms::lut::LutAnswer;
 
@@ -122,8 +125,9 @@ fn measure(walls: &Walls, poses: &[Rigid], times_us: &[f64], motion: CameraMotio
 }
 
 fn fit(scene: SceneObservations) -> (Calibration, FitReport) {
-    let measured = Measurements { scenes: vec![scene], ..Measurements::default() };
-    ExposureFit::new(&settings(), Vec::new()).unwrap().and(&settings(), None, measured).unwrap()
+    let mut measured = Measurements::default();
+    measured.add_scene(scene);
+    ExposureFit::new(&settings(), Vec::new()).unwrap().complete(None, measured).unwrap()
 }
 
 fn refused(report: &FitReport) -> Vec<Factor> {
@@ -134,7 +138,7 @@ fn refused(report: &FitReport) -> Vec<Factor> {
 /// Largest deviation of h over its range, of v over its support, of S.
 fn deviations(calibration: &Calibration) -> [f64; 3] {
     let spline = calibration.terms.spline.as_ref().unwrap();
-    let [min_m, max_m] = spline.valid_distance_m;
+    let [min_m, max_m] = spline.law.valid_distance_m;
     let law = (0..=40).map(|i| min_m + (max_m - min_m) * f64::from(i) / 40.0);
     let law = law.map(|d| (spline.ln_response(d) - ln_h(d) + ln_h(0.9)).abs()).fold(0.0, f64::max);
     let profile = calibration.terms.profile.as_ref().unwrap();
@@ -204,7 +208,11 @@ fn a_single_plane_does_not_tell_the_motion() {
     assert!(scene.observations.is_empty() && scene.source.frames_used == 0);
     let (calibration, report) = fit(scene);
     assert_eq!(calibration.terms, crate::calibration::Terms::default());
-    assert!(matches!(report.warnings[0], FitWarning::MotionRefused { .. }), "{:?}", report.warnings);
+    assert!(
+        matches!(report.warnings[0], FitWarning::Scene(SceneWarning::MotionRefused { .. })),
+        "{:?}",
+        report.warnings
+    );
 }
 
 #[test]
@@ -220,7 +228,7 @@ fn a_still_camera_tells_the_time_alone_and_with_one_time_nothing() {
     assert_eq!(calibration.reference.integration_time_us, Some(8000.0));
     let (calibration, report) = fit(measure(&room(), &still, &[8000.0], CameraMotion::Recorded));
     assert_eq!(calibration.terms, crate::calibration::Terms::default());
-    assert_eq!(report.warnings, [FitWarning::NothingVaries]);
+    assert_eq!(report.warnings, [FitWarning::Scene(SceneWarning::NothingVaries)]);
 }
 
 #[test]

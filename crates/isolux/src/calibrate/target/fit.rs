@@ -5,105 +5,93 @@
 //! too; otherwise every integration time gets a factor of its own, which is not given out: labels of a few windows
 //! make no table.
 
+use super::joint_input::JointInput;
 use super::report::TargetReport;
-use super::rows::Rows;
-use super::{TargetWindows, gloss};
-use crate::calibrate::factors::{FOLDS, Fitted, held_out};
-use crate::calibrate::joint::{self, AngleModel, Factor, JointFit, JointModel, Observation};
-use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
-use crate::calibration::Calibration;
-use crate::terms::Source;
+use super::{TargetError, TargetWarning, TargetWindows, gloss};
+use crate::calibrate::CalibrateSettings;
+use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
+use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
+use crate::calibration::{Calibration, Terms};
+use crate::terms::angle::LAMBERT;
 
 /// Factors on the weight of smoothness that are tried.
 const SMOOTHNESS: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
 
-/// Fits the terms that the windows determine into `calibration`. Whatever was left out, and why, goes to `warnings`.
+/// Fits the terms that the windows determine into `calibration`. Whatever was left out, and why, comes with the report.
 ///
 /// # Errors
-/// [`CalibrateError::Target`] when there is nothing to fit.
+/// [`TargetError`] when there is nothing to fit.
 pub(in crate::calibrate) fn fit(
     settings: &CalibrateSettings,
     targets: &[TargetWindows],
     calibration: &mut Calibration,
-    warnings: &mut Vec<FitWarning>,
-) -> Result<TargetReport, CalibrateError> {
-    let about_targets = warnings.len();
-    let mut rows = Rows::new(settings, targets, calibration, warnings)?;
-    let mut surfaces = gloss::judge(&rows, targets, warnings);
+) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
+    let mut warnings = Vec::new();
+    let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
+    let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
-    rows.leave_out(&left_out);
-    rows.model.smoothness = smoothness(&rows);
-    let fit = determined(&rows.observations, rows.model, warnings).map_err(CalibrateError::Target)?;
+    input.leave_out(&left_out);
+    input.model.smoothness = smoothness(&input);
+    let fit = determined(&input.observations, input.model, &mut warnings)?;
     for (surface, used) in surfaces.iter_mut().enumerate() {
-        let mine = rows.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
+        let mine = input.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
         used.outliers = mine.filter(|(_, weight)| **weight == 0.0).count();
     }
     let fitted = Fitted {
-        of: "targets",
-        observations: &rows.observations,
+        observations: &input.observations,
         fit: &fit,
-        held_out_residual: held_out(&rows.observations, &rows.frames, &fit.model, 0..FOLDS),
-        reference_m: rows.reference_m,
-        fitted_on: targets.iter().map(source).collect(),
-        warnings: warnings[about_targets..].iter().map(ToString::to_string).collect(),
+        held_out_residual: held_out(&input.observations, &input.frames, &fit.model, 0..FOLDS),
+        fitted_on: targets.iter().map(|target| target.source.clone()).collect(),
+        warnings: warnings.iter().map(ToString::to_string).collect(),
     };
-    warnings.extend(fitted.write(calibration));
-    Ok(TargetReport {
+    warnings.extend(write(&fitted, &mut calibration.terms).map(TargetWarning::Factor));
+    let report = TargetReport {
         surfaces,
-        lambert_assumed: fit.model.angle == AngleModel::Fixed(crate::terms::angle::LAMBERT),
+        lambert_assumed: fit.model.angle == AngleModel::Fixed(LAMBERT),
         unknowns: fit.unknowns,
         rank: fit.rank,
         sigma: fit.sigma,
         findings: fit.findings,
-    })
+    };
+    Ok((report, warnings))
 }
 
-fn source(target: &TargetWindows) -> Source {
-    Source {
-        recording: target.recording.clone(),
-        frames_used: target.frames_used,
-        frames_left_out: target.frames - target.frames_used,
+/// Writes the determined factors over distance, image and angle into `terms`.
+fn write(fitted: &Fitted<'_>, terms: &mut Terms) -> Option<FactorWarning> {
+    let spline = fitted.spline();
+    if let Ok(Some(spline)) = &spline {
+        terms.spline = Some(spline.clone());
     }
+    terms.profile = fitted.profile().or(terms.profile.take());
+    terms.angle = fitted.angle().or(terms.angle.take());
+    spline.err()
 }
 
 /// The fit of the largest model whose factors are not confounded. Each refusal becomes a warning.
 fn determined(
     observations: &[Observation],
     mut model: JointModel,
-    warnings: &mut Vec<FitWarning>,
-) -> Result<JointFit, joint::JointError> {
+    warnings: &mut Vec<TargetWarning>,
+) -> Result<JointFit, JointError> {
     let mut fit = joint::solve(observations, &model)?;
-    if let Some(reason) = fit.refusal(Factor::Angle) {
-        warnings.push(FitWarning::FactorRefused {
-            of: "targets",
-            reason: reason.clone(),
-            unknowns: fit.unknowns,
-            rank: fit.rank,
-        });
-        warnings.push(FitWarning::LambertAssumed);
-        model.angle = AngleModel::Fixed(crate::terms::angle::LAMBERT);
+    if let Some(refused) = FactorWarning::refused(&fit, Factor::Angle) {
+        warnings.push(TargetWarning::Factor(refused));
+        warnings.push(TargetWarning::LambertAssumed);
+        model.angle = AngleModel::Fixed(LAMBERT);
         fit = joint::solve(observations, &model)?;
     }
-    for factor in [Factor::Time, Factor::Distance, Factor::Profile] {
-        if let Some(reason) = fit.refusal(factor) {
-            let reason = reason.clone();
-            warnings.push(FitWarning::FactorRefused {
-                of: "targets",
-                reason,
-                unknowns: fit.unknowns,
-                rank: fit.rank,
-            });
-        }
-    }
+    let others = [Factor::Time, Factor::Distance, Factor::Profile];
+    let refused = others.into_iter().filter_map(|factor| FactorWarning::refused(&fit, factor));
+    warnings.extend(refused.map(TargetWarning::Factor));
     Ok(fit)
 }
 
 /// The smoothness that predicts frames best that are left out; of equals, the least. The windows of one frame share
 /// the errors of its pose, so that independent errors, for which 1 is right, are the exception.
-fn smoothness(rows: &Rows) -> f64 {
+fn smoothness(input: &JointInput) -> f64 {
     let tried = SMOOTHNESS.map(|smoothness| {
-        let model = JointModel { smoothness, ..rows.model };
-        let held_out = held_out(&rows.observations, &rows.frames, &model, 0..FOLDS);
+        let model = JointModel { smoothness, ..input.model };
+        let held_out = held_out(&input.observations, &input.frames, &model, 0..FOLDS);
         (smoothness, held_out.unwrap_or(f64::INFINITY))
     });
     tried

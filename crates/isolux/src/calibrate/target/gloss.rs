@@ -1,9 +1,8 @@
 //! Which materials are matt enough to share one exponent of the cosine.
 
-use super::TargetWindows;
+use super::joint_input::JointInput;
 use super::report::SurfaceUse;
-use super::rows::Rows;
-use crate::calibrate::FitWarning;
+use super::{TargetWarning, TargetWindows};
 use crate::numerics::regression::{Intercepts, Regression, Row};
 use crate::numerics::robust::Loss;
 
@@ -16,18 +15,18 @@ const GLOSSY: f64 = 2.5;
 /// Fits each material's own exponent, its slopes over ln d, r² and ln t aside. Glossy materials are left out, unless all
 /// are.
 pub(super) fn judge(
-    rows: &Rows,
+    input: &JointInput,
     targets: &[TargetWindows],
-    warnings: &mut Vec<FitWarning>,
+    warnings: &mut Vec<TargetWarning>,
 ) -> Vec<SurfaceUse> {
     let mut surfaces: Vec<SurfaceUse> = (0u32..)
-        .zip(&rows.surfaces)
+        .zip(&input.surfaces)
         .map(|(surface, &(recording, label))| {
             let mine: Vec<usize> =
-                (0..rows.observations.len()).filter(|&i| rows.observations[i].surface == surface).collect();
-            let exponent = exponent(rows, &mine);
+                (0..input.observations.len()).filter(|&i| input.observations[i].surface == surface).collect();
+            let exponent = exponent(input, &mine);
             SurfaceUse {
-                recording: targets[recording].recording.clone(),
+                recording: targets[recording].source.recording.clone(),
                 label,
                 windows: mine.len(),
                 outliers: 0,
@@ -42,15 +41,15 @@ pub(super) fn judge(
     for surface in surfaces.iter().filter(|surface| surface.left_out) {
         let (recording, label) = (surface.recording.clone(), surface.label);
         let exponent = surface.exponent.unwrap_or(f64::NAN);
-        warnings.push(FitWarning::Glossy { recording, label, exponent });
+        warnings.push(TargetWarning::Glossy { recording, label, exponent });
     }
     surfaces
 }
 
 /// The exponent and its standard error; `None` where the windows do not tell it.
-fn exponent(rows: &Rows, mine: &[usize]) -> Option<(f64, f64)> {
+fn exponent(input: &JointInput, mine: &[usize]) -> Option<(f64, f64)> {
     let used =
-        || mine.iter().map(|&i| &rows.observations[i]).filter(|o| o.cosine > 0.0 && o.distance_m > 0.0);
+        || mine.iter().map(|&i| &input.observations[i]).filter(|o| o.cosine > 0.0 && o.distance_m > 0.0);
     if used().count() < LEAST_WINDOWS {
         return None;
     }
@@ -58,13 +57,14 @@ fn exponent(rows: &Rows, mine: &[usize]) -> Option<(f64, f64)> {
         let first = mine.first().map(|&i| value(i));
         mine.iter().any(|&i| Some(value(i)) != first)
     };
-    let with_time = varies(&|i| f64::from(rows.observations[i].time));
+    let with_time = varies(&|i| f64::from(input.observations[i].time));
     let names = ["cosine", "distance", "r²", "time"];
     let count = if with_time { 4 } else { 3 };
     let mut regression = Regression::new(names[..count].iter().copied(), Intercepts::PerGroup);
     for observation in used() {
         let [x, y] = observation.place.map(f64::from);
-        let time = rows.times_us.get(usize::from(observation.time)).map_or(0.0, |time| f64::from(*time).ln());
+        let time =
+            input.times_us.get(usize::from(observation.time)).map_or(0.0, |time| f64::from(*time).ln());
         let columns =
             [f64::from(observation.cosine).ln(), f64::from(observation.distance_m).ln(), x * x + y * y, time];
         let row = Row {

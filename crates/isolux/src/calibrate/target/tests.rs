@@ -1,7 +1,13 @@
 //! Rendered boards with known factors: do the terms come back?
 
 use super::*;
-use crate::calibrate::{ExposureFit, FitWarning, Measurements};
+use crate::calibrate::factor_terms::FactorWarning;
+use crate::calibrate::{
+    CalibrateError, CalibrateSettings, ExposureFit, FitWarning, MeasureError, Measurements,
+};
+use crate::frame::Frame;
+use crate::frame::Intrinsics;
+use crate::frame::{Plane, Shape};
 use crate::terms::profile::Places;
 
 const SHAPE: Shape = Shape::new(60, 80);
@@ -40,9 +46,10 @@ fn calibrated(frames: &[Frame], intrinsics: Option<Intrinsics>) -> (crate::Calib
     let settings = CalibrateSettings::default();
     let mut sweep = TargetSweep::new("board", &settings, intrinsics);
     frames.iter().try_for_each(|frame| sweep.push(frame)).unwrap();
-    let measured = Measurements { targets: vec![sweep.finish()], ..Measurements::default() };
+    let mut measured = Measurements::default();
+    measured.add_target(sweep.finish());
     let (calibration, report) =
-        ExposureFit::new(&settings, Vec::new()).unwrap().and(&settings, None, measured).unwrap();
+        ExposureFit::new(&settings, Vec::new()).unwrap().complete(None, measured).unwrap();
     calibration.check().unwrap();
     (calibration, report.warnings)
 }
@@ -79,14 +86,20 @@ fn a_board_that_always_faces_the_camera_tells_no_exponent_and_says_so() {
     let (calibration, warnings) = calibrated(&frames, Some(INTRINSICS));
     assert!(calibration.terms.angle.is_none() && calibration.terms.profile.is_some());
     assert!(
-        warnings.iter().any(|warning| matches!(warning, FitWarning::FactorRefused { .. })),
+        warnings.iter().any(|warning| matches!(
+            warning,
+            FitWarning::Target(TargetWarning::Factor(FactorWarning::Refused { .. }))
+        )),
         "{warnings:?}"
     );
-    assert!(warnings.contains(&FitWarning::LambertAssumed));
+    assert!(warnings.contains(&FitWarning::Target(TargetWarning::LambertAssumed)));
     // Without intrinsics, no angle at all.
     let (calibration, warnings) = calibrated(&frames, None);
     assert!(calibration.terms.angle.is_none());
-    assert!(warnings.contains(&FitWarning::NoIntrinsics { recording: "board".to_owned() }), "{warnings:?}");
+    assert!(
+        warnings.contains(&FitWarning::Target(TargetWarning::NoIntrinsics { recording: "board".to_owned() })),
+        "{warnings:?}"
+    );
 }
 
 #[test]
@@ -95,12 +108,13 @@ fn recordings_without_labels_or_windows_are_refused() {
     let mut sweep = TargetSweep::new("board", &settings, None);
     let mut frame = board(1.0, [0.0; 2], &mut 3);
     frame.target = None;
-    assert_eq!(sweep.push(&frame), Err(CalibrateError::NoTarget { frame: 0 }));
+    assert_eq!(sweep.push(&frame), Err(MeasureError::NoTarget { frame: 0 }));
     frame.target = Some(Plane::filled(SHAPE, 0));
     sweep.push(&frame).unwrap();
-    let measured = Measurements { targets: vec![sweep.finish()], ..Measurements::default() };
+    let mut measured = Measurements::default();
+    measured.add_target(sweep.finish());
     assert!(matches!(
-        ExposureFit::new(&settings, Vec::new()).unwrap().and(&settings, None, measured),
+        ExposureFit::new(&settings, Vec::new()).unwrap().complete(None, measured),
         Err(CalibrateError::Target(_))
     ));
 }

@@ -46,7 +46,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>,
         }
         DistanceStep::Spline => {
             let spline = terms.and_then(|terms| terms.spline.as_ref()).ok_or_else(missing)?;
-            (spline.distance_law(), fitted(spline.valid_distance_m))
+            (spline.law.distance_law(), fitted(spline.law.valid_distance_m))
         }
         DistanceStep::Cubic => {
             let cubic = terms.and_then(|terms| terms.cubic.as_ref()).ok_or_else(missing)?;

@@ -1,5 +1,7 @@
 use super::*;
 use crate::frame::Intrinsics;
+use crate::frame::Shape;
+use crate::terms::FitQuality;
 
 const SHAPE: Shape = Shape::new(48, 64);
 
@@ -10,11 +12,7 @@ fn profile() -> Profile {
     let middle = |cell: usize| (2..14).contains(&(cell % 16)) && (2..10).contains(&(cell / 16));
     Profile {
         version: 1,
-        height: SHAPE.height,
-        width: SHAPE.width,
-        origin_px: places.origin,
-        radial: [-0.9, 0.2],
-        tensor: vec![0.0; Surface::TENSOR_LEN],
+        map: Map { places, radial: [-0.9, 0.2], tensor: vec![0.0; Surface::TENSOR_LEN] },
         support: Profile::support_map(middle),
         fitted_on: Vec::new(),
         fit: FitQuality { points: 1, residual: 0.0, held_out_residual: None },
@@ -57,13 +55,13 @@ fn edited_parameters_are_checked() {
         profile.check().unwrap_err().field
     };
     assert_eq!(spoil(|p| p.version = 2), "profile.version");
-    assert_eq!(spoil(|p| p.height = 0), "profile.height");
-    assert_eq!(spoil(|p| p.width = usize::MAX), "profile.height");
-    assert_eq!(spoil(|p| p.origin_px[0] = f64::NAN), "profile.origin_px");
-    assert_eq!(spoil(|p| p.radial[1] = f64::INFINITY), "profile.radial");
-    assert_eq!(spoil(|p| p.radial[1] = 900.0), "profile.tensor");
-    assert_eq!(spoil(|p| p.tensor.truncate(47)), "profile.tensor");
-    assert_eq!(spoil(|p| p.tensor[3] = f64::NAN), "profile.tensor");
+    assert_eq!(spoil(|p| p.map.places.shape.height = 0), "profile.height");
+    assert_eq!(spoil(|p| p.map.places.shape.width = usize::MAX), "profile.height");
+    assert_eq!(spoil(|p| p.map.places.origin[0] = f64::NAN), "profile.origin_px");
+    assert_eq!(spoil(|p| p.map.radial[1] = f64::INFINITY), "profile.radial");
+    assert_eq!(spoil(|p| p.map.radial[1] = 900.0), "profile.tensor");
+    assert_eq!(spoil(|p| p.map.tensor.truncate(47)), "profile.tensor");
+    assert_eq!(spoil(|p| p.map.tensor[3] = f64::NAN), "profile.tensor");
     assert_eq!(spoil(|p| p.support.truncate(2)), "profile.support");
     assert_eq!(spoil(|p| p.support[3] = "é".repeat(8)), "profile.support");
     assert_eq!(spoil(|p| p.support = Profile::support_map(|_| false)), "profile.support");

@@ -8,12 +8,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
-use super::evidence::AmplitudeStack;
+use super::means::AmplitudeStack;
 use super::still::{LEAST_SAMPLES, StillScene};
 use crate::numerics::nnls;
 use crate::numerics::robust::{biweight, tukey_share};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
-use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
+use crate::terms::check::{Check, ParameterError, Parameters};
+use crate::terms::{FitQuality, Source, root_mean_square};
 
 /// Linear amplitude by amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,7 +55,11 @@ impl AmplitudeResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when hardly any pixel is compressed.
-    pub fn fit(stacks: &[&AmplitudeStack], least_amplitude_dn: f64) -> Result<Self, ResponseError> {
+    pub fn fit(
+        stacks: &[&AmplitudeStack],
+        least_amplitude_dn: f64,
+        fitted_on: Vec<Source>,
+    ) -> Result<Self, ResponseError> {
         let pixels = collect(stacks, least_amplitude_dn);
         let mut largest: Vec<f64> = pixels.iter().filter_map(|rows| rows.last()).map(|row| row[0]).collect();
         let top = quantile(&mut largest, 0.99).ok_or(ResponseError::NoCompression)?;
@@ -76,7 +81,7 @@ impl AmplitudeResponse {
             held_out_residual: held_out,
         };
         let hinge_dn = hinges.into_iter().map(f64::exp).collect();
-        Ok(Self { hinge_dn, increment, largest_dn: top.exp(), fitted_on: Vec::new(), fit })
+        Ok(Self { hinge_dn, increment, largest_dn: top.exp(), fitted_on, fit })
     }
 
     /// Linear amplitude of an amplitude, both DN; `None` above the range.
@@ -87,28 +92,6 @@ impl AmplitudeResponse {
         (amplitude_dn <= self.largest_dn).then(|| amplitude_dn * exponent.exp())
     }
 
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        let (hinges, increments) = (&self.hinge_dn, &self.increment);
-        let positive = |x: f64| x > 0.0 && x < 1e12;
-        let increasing = hinges.windows(2).all(|w| w[0] < w[1]) && hinges.iter().all(|h| positive(*h));
-        let field = "response.amplitude.hinge_dn";
-        require(increasing, field, "not increasing from above 0", "increasing positive DN")?;
-        let counts = format!("{} for {} hinges", increments.len(), hinges.len());
-        let field = "response.amplitude.increment";
-        require(increments.len() == hinges.len(), field, counts, "one for each hinge")?;
-        let impossible = increments.iter().find(|c| !(0.0..=1e3).contains(*c));
-        let found = impossible.map_or_else(String::new, f64::to_string);
-        require(found.is_empty(), field, found, "numbers from 0 to 1000")?;
-        let largest = self.linear_dn(self.largest_dn).unwrap_or(f64::NAN);
-        let fine = positive(self.largest_dn) && positive(largest);
-        require(
-            fine,
-            "response.amplitude.largest_dn",
-            self.largest_dn,
-            "positive DN of a finite linear value",
-        )
-    }
-
     /// Prepared for many pixels.
     pub(crate) fn planned(&self) -> PlannedAmplitude {
         const INTERVALS: usize = 4096;
@@ -116,6 +99,27 @@ impl AmplitudeResponse {
         // Rounding may put the last one above the range.
         let linear = |i: usize| self.linear_dn((i as f64 * step).min(self.largest_dn)).unwrap_or(0.0);
         PlannedAmplitude { intervals_per_dn: 1.0 / step, linear_dn: (0..=INTERVALS).map(linear).collect() }
+    }
+}
+
+impl Parameters for AmplitudeResponse {
+    const NAME: &'static str = "amplitude";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        let (hinges, increments) = (&self.hinge_dn, &self.increment);
+        let positive = |x: f64| x > 0.0 && x < 1e12;
+        let increasing = hinges.windows(2).all(|w| w[0] < w[1]) && hinges.iter().all(|h| positive(*h));
+        let expected = "increasing positive DN";
+        here.at("hinge_dn").require(increasing, "not increasing from above 0", expected)?;
+        let counts = format!("{} for {} hinges", increments.len(), hinges.len());
+        let at_increments = here.at("increment");
+        at_increments.require(increments.len() == hinges.len(), counts, "one for each hinge")?;
+        let impossible = increments.iter().find(|c| !(0.0..=1e3).contains(*c));
+        let found = impossible.map_or_else(String::new, f64::to_string);
+        at_increments.require(impossible.is_none(), found, "numbers from 0 to 1000")?;
+        let largest = self.linear_dn(self.largest_dn).unwrap_or(f64::NAN);
+        let fine = positive(self.largest_dn) && positive(largest);
+        here.at("largest_dn").require(fine, self.largest_dn, "positive DN of a finite linear value")
     }
 }
 
@@ -257,8 +261,8 @@ mod tests {
             let fill = |pixel: i32| 0.001 * f64::from(time) * 1.06f64.powi(pixel);
             stack.push(1000.0 * f64::from(time), (0..60).map(|pixel| amplitude(fill(pixel)) as f32));
         }
-        let found = AmplitudeResponse::fit(&[&stack], 0.0).unwrap();
-        assert!(found.check().is_ok());
+        let found = AmplitudeResponse::fit(&[&stack], 0.0, Vec::new()).unwrap();
+        assert!(found.check_at(&Check::of("amplitude")).is_ok());
         for fill in [0.05, 0.2, 0.4, 0.5, 0.55] {
             let linear = found.linear_dn(amplitude(fill)).unwrap();
             // Straight pieces of a tenth of ln A, and a curve that steepens: 1 %.
@@ -280,7 +284,8 @@ mod tests {
         for time in 1..=9u8 {
             stack.push(f64::from(time), (1..=30u8).map(|rate| f32::from(rate) * f32::from(time)));
         }
-        let linear = AmplitudeResponse::fit(&[&stack], 0.0).map(|found| found.linear_dn(200.0).unwrap());
+        let linear =
+            AmplitudeResponse::fit(&[&stack], 0.0, Vec::new()).map(|found| found.linear_dn(200.0).unwrap());
         // Rounding may leave a bend of the size of f32's ε.
         assert!(linear.as_ref().map_or(true, |linear| (linear / 200.0 - 1.0).abs() < 1e-5), "{linear:?}");
     }

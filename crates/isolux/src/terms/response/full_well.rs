@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::evidence::{PixelMeans, PixelSeries, plateau};
+use super::ResponseError;
+use super::means::{PixelMeans, PixelSeries, plateau};
 use super::solve::{Model, Series, Solution, solve};
 use super::well::{InverseTable, SoftWell};
-use super::{ResponseError, check_softness};
 use crate::frame::phase::CLIPPED_SHARE;
 use crate::numerics::statistics::median;
-use crate::terms::{FitQuality, ParameterError, require, root_mean_square};
+use crate::terms::check::{Check, ParameterError};
+use crate::terms::{FitQuality, root_mean_square};
 
 /// Full well, softness and black level of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,20 +58,18 @@ impl FullWell {
         InverseTable::new(self.shape(), self.full_well_dn, largest_dn - self.black_level_dn)
     }
 
-    /// Refuses what no fit gives; `fields` are the names of softness, full well, black level and largest value.
-    pub(super) fn check(&self, fields: [&'static str; 4], largest_dn: f64) -> Result<(), ParameterError> {
-        let (well, black) = (self.full_well_dn, self.black_level_dn);
-        check_softness(fields[0], self.softness)?;
-        require((1e-6..=1e12).contains(&well), fields[1], well, "a number of DN, 1e-6 to 1e12")?;
-        require(black.abs() <= well, fields[2], black, "a number of DN, at most the full well")?;
+    /// Refuses what no fit gives, `largest_dn` being the largest value that is inverted. Both stand within `tier`.
+    pub(super) fn check_at(&self, tier: &Check<'_>, largest_dn: f64) -> Result<(), ParameterError> {
+        let (here, well, black) = (tier.at("well"), self.full_well_dn, self.black_level_dn);
+        self.shape().check_at(&here)?;
+        let fine = (1e-6..=1e12).contains(&well);
+        here.at("full_well_dn").require(fine, well, "a number of DN, 1e-6 to 1e12")?;
+        let fine = black.abs() <= well;
+        here.at("black_level_dn").require(fine, black, "a number of DN, at most the full well")?;
         let most = self.largest_dn(None) * (1.0 + 1e-9) + 1e-9 * well;
         let fine = largest_dn > black && largest_dn <= most;
-        require(
-            fine,
-            fields[3],
-            largest_dn,
-            "DN above the black level, where the slope of the well is 0.2 or more",
-        )
+        let expected = "DN above the black level, where the slope of the well is 0.2 or more";
+        tier.at("largest_dn").require(fine, largest_dn, expected)
     }
 }
 

@@ -11,12 +11,13 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
-use super::evidence::{PixelMeans, PixelSeries};
 use super::full_well::{Channel, Fitted, FullWell, fit};
+use super::means::{PixelMeans, PixelSeries};
 use super::phase_samples::{rate, shot_noise};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
-use crate::terms::{FitQuality, ParameterError, Source};
+use crate::terms::check::{Check, ParameterError, Parameters};
+use crate::terms::{FitQuality, Source};
 
 /// The well as the DC image shows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,19 +41,9 @@ impl IntensityResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few or nothing is compressed.
-    pub fn fit(pixels: &[PixelSeries]) -> Result<Self, ResponseError> {
+    pub fn fit(pixels: &[PixelSeries], fitted_on: Vec<Source>) -> Result<Self, ResponseError> {
         let Fitted { well, clip_dn, largest_dn, fit } = fit(&Dc, pixels)?;
-        Ok(Self { well, clip_dn, largest_dn, fitted_on: Vec::new(), fit })
-    }
-
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        let fields = [
-            "response.intensity.well.softness",
-            "response.intensity.well.full_well_dn",
-            "response.intensity.well.black_level_dn",
-            "response.intensity.largest_dn",
-        ];
-        self.well.check(fields, self.largest_dn)
+        Ok(Self { well, clip_dn, largest_dn, fitted_on, fit })
     }
 
     /// Prepared for many pixels.
@@ -63,6 +54,14 @@ impl IntensityResponse {
             largest_dn: self.largest_dn - self.well.black_level_dn,
             table: self.well.table(most),
         }
+    }
+}
+
+impl Parameters for IntensityResponse {
+    const NAME: &'static str = "intensity";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        self.well.check_at(here, self.largest_dn)
     }
 }
 

@@ -17,13 +17,13 @@
 //! pixel would deliver at the reference time; the multiplier of a pixel that is compressed there is not 1.
 
 mod amplitude;
-mod evidence;
 mod fill_time;
 mod full_well;
 mod intensity;
+mod map_rows;
+mod means;
 mod phase_samples;
 mod pixel;
-mod rows;
 mod scalar;
 mod solve;
 mod still;
@@ -33,10 +33,10 @@ use serde::{Deserialize, Serialize};
 
 pub use amplitude::AmplitudeResponse;
 pub(crate) use amplitude::PlannedAmplitude;
-pub use evidence::{AmplitudeStack, PixelMeans, PixelSeries};
 pub use full_well::FullWell;
 pub use intensity::IntensityResponse;
 pub(crate) use intensity::PlannedIntensity;
+pub use means::{AmplitudeStack, PixelMeans, PixelSeries};
 pub use phase_samples::PhaseSampleResponse;
 pub(crate) use phase_samples::PlannedBins;
 pub use pixel::PixelResponse;
@@ -44,7 +44,7 @@ pub(crate) use pixel::PlannedPixels;
 pub use scalar::ScalarResponse;
 pub use well::SoftWell;
 
-use super::{ParameterError, require};
+use super::check::{Check, ParameterError, Parameters};
 use crate::frame::Channels;
 use crate::names::named;
 
@@ -153,15 +153,19 @@ impl Response {
     /// # Errors
     /// [`ParameterError`] names the field.
     pub fn check(&self) -> Result<(), ParameterError> {
-        require(self.version == Self::VERSION, "response.version", self.version, "1")?;
-        self.scalar.as_ref().map_or(Ok(()), ScalarResponse::check)?;
-        self.amplitude.as_ref().map_or(Ok(()), AmplitudeResponse::check)?;
-        self.pixel.as_ref().map_or(Ok(()), PixelResponse::check)?;
-        self.intensity.as_ref().map_or(Ok(()), IntensityResponse::check)?;
-        self.phase_samples.as_ref().map_or(Ok(()), PhaseSampleResponse::check)
+        self.check_at(&Check::of(Self::NAME))
     }
 }
 
-fn check_softness(field: &'static str, softness: f64) -> Result<(), ParameterError> {
-    require(SoftWell::SOFTNESS_LIMITS.contains(&softness), field, softness, "a softness from 1 to 16")
+impl Parameters for Response {
+    const NAME: &'static str = "response";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        here.version(self.version, Self::VERSION)?;
+        here.optional(&self.scalar)?;
+        here.optional(&self.amplitude)?;
+        here.optional(&self.pixel)?;
+        here.optional(&self.intensity)?;
+        here.optional(&self.phase_samples)
+    }
 }

@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
-use super::evidence::{PixelMeans, PixelSeries};
 use super::full_well::{Channel, Fitted, FullWell, fit};
+use super::means::{PixelMeans, PixelSeries};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
 use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
-use crate::terms::{FitQuality, ParameterError, Source, require};
+use crate::terms::check::{Check, ParameterError, Parameters};
+use crate::terms::{FitQuality, Source};
 
 /// The well of the raw bins: `A_k = black level + W f(x_k)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,22 +36,13 @@ impl PhaseSampleResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few or nothing is compressed.
-    pub fn fit(pixels: &[PixelSeries], modulation_frequency_hz: Option<f64>) -> Result<Self, ResponseError> {
+    pub fn fit(
+        pixels: &[PixelSeries],
+        modulation_frequency_hz: Option<f64>,
+        fitted_on: Vec<Source>,
+    ) -> Result<Self, ResponseError> {
         let Fitted { well, clip_dn, largest_dn, fit } = fit(&Bins, pixels)?;
-        Ok(Self { well, clip_dn, largest_dn, modulation_frequency_hz, fitted_on: Vec::new(), fit })
-    }
-
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        let fields = [
-            "response.phase_samples.well.softness",
-            "response.phase_samples.well.full_well_dn",
-            "response.phase_samples.well.black_level_dn",
-            "response.phase_samples.largest_dn",
-        ];
-        self.well.check(fields, self.largest_dn)?;
-        let frequency = self.modulation_frequency_hz.unwrap_or(1e6);
-        let field = "response.phase_samples.modulation_frequency_hz";
-        require((1e3..=1e12).contains(&frequency), field, frequency, "a frequency in Hz, 1e3 to 1e12")
+        Ok(Self { well, clip_dn, largest_dn, modulation_frequency_hz, fitted_on, fit })
     }
 
     /// Prepared for many pixels.
@@ -61,6 +53,17 @@ impl PhaseSampleResponse {
             table: self.well.table(self.largest_dn),
             metres_per_radian: self.modulation_frequency_hz.map(metres),
         }
+    }
+}
+
+impl Parameters for PhaseSampleResponse {
+    const NAME: &'static str = "phase_samples";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        self.well.check_at(here, self.largest_dn)?;
+        let frequency = self.modulation_frequency_hz.unwrap_or(1e6);
+        let fine = (1e3..=1e12).contains(&frequency);
+        here.at("modulation_frequency_hz").require(fine, frequency, "a frequency in Hz, 1e3 to 1e12")
     }
 }
 

@@ -5,15 +5,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::evidence::AmplitudeStack;
 use super::fill_time::{FillTimes, Sample};
+use super::means::AmplitudeStack;
 use super::still::{LEAST_SAMPLES, StillScene};
 use super::well::SoftWell;
-use super::{ResponseError, check_softness, rows};
+use super::{ResponseError, map_rows};
 use crate::frame::Shape;
 use crate::numerics::minimum::minimum;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
-use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
+use crate::terms::check::{Check, ParameterError, Parameters};
+use crate::terms::{FitQuality, Source, root_mean_square};
 
 /// One well per pixel, of one scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,7 +27,7 @@ pub struct PixelResponse {
     /// Integration times of the fit, µs, shortest and longest.
     pub valid_integration_time_us: [f64; 2],
     /// τ of every pixel, µs: one string per image row, values by spaces, `-` where no compression is seen.
-    #[serde(with = "rows")]
+    #[serde(with = "map_rows")]
     pub full_well_time_us: Vec<Vec<Option<f32>>>,
     /// What it was fitted on.
     pub fitted_on: Vec<Source>,
@@ -47,7 +48,11 @@ impl PixelResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few, hardly any pixel is compressed, or the image is too large.
-    pub fn fit(stack: &AmplitudeStack, least_amplitude_dn: f64) -> Result<Self, ResponseError> {
+    pub fn fit(
+        stack: &AmplitudeStack,
+        least_amplitude_dn: f64,
+        fitted_on: Vec<Source>,
+    ) -> Result<Self, ResponseError> {
         let shape = stack.shape();
         if shape.pixels() > Self::MOST_PIXELS {
             return Err(ResponseError::ImageTooLarge { pixels: shape.pixels() });
@@ -84,7 +89,7 @@ impl PixelResponse {
             largest_fill: fullest.min(SoftWell { softness }.fill_at_peak()),
             valid_integration_time_us: [first, last],
             full_well_time_us,
-            fitted_on: Vec::new(),
+            fitted_on,
             fit,
         })
     }
@@ -93,23 +98,6 @@ impl PixelResponse {
     #[must_use]
     pub fn shape(&self) -> Shape {
         Shape::new(self.full_well_time_us.len(), self.full_well_time_us.first().map_or(0, Vec::len))
-    }
-
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        check_softness("response.pixel.softness", self.softness)?;
-        let fill = self.largest_fill;
-        require(fill > 0.0 && fill <= 2.0, "response.pixel.largest_fill", fill, "a fill above 0, at most 2")?;
-        let [first, last] = self.valid_integration_time_us;
-        let (field, found) = ("response.pixel.valid_integration_time_us", format!("{first} to {last}"));
-        require(0.0 < first && first <= last && last.is_finite(), field, found, "two times in µs, rising")?;
-        let Shape { height, width } = self.shape();
-        let field = "response.pixel.full_well_time_us";
-        let even = width > 0 && self.full_well_time_us.iter().all(|row| row.len() == width);
-        require(even, field, format!("{height} rows of unlike length"), "rows of one length")?;
-        let taus = self.full_well_time_us.iter().flatten().flatten();
-        let impossible = taus.copied().find(|tau| !(1e-3..=1e12).contains(tau));
-        let found = impossible.map_or_else(String::new, |tau| tau.to_string());
-        require(found.is_empty(), field, found, "times in µs, 1e-3 to 1e12, or `-`")
     }
 
     /// Prepared for many frames.
@@ -122,6 +110,28 @@ impl PixelResponse {
             longest_time_us: self.valid_integration_time_us[1],
             largest_fill: self.largest_fill,
         }
+    }
+}
+
+impl Parameters for PixelResponse {
+    const NAME: &'static str = "pixel";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+        SoftWell { softness: self.softness }.check_at(here)?;
+        let fill = self.largest_fill;
+        here.at("largest_fill").require(fill > 0.0 && fill <= 2.0, fill, "a fill above 0, at most 2")?;
+        let [first, last] = self.valid_integration_time_us;
+        let fine = 0.0 < first && first <= last && last.is_finite();
+        let found = format!("{first} to {last}");
+        here.at("valid_integration_time_us").require(fine, found, "two times in µs, rising")?;
+        let Shape { height, width } = self.shape();
+        let map = here.at("full_well_time_us");
+        let even = width > 0 && self.full_well_time_us.iter().all(|row| row.len() == width);
+        map.require(even, format!("{height} rows of unlike length"), "rows of one length")?;
+        let taus = self.full_well_time_us.iter().flatten().flatten();
+        let impossible = taus.copied().find(|tau| !(1e-3..=1e12).contains(tau));
+        let found = impossible.map_or_else(String::new, |tau| tau.to_string());
+        map.require(impossible.is_none(), found, "times in µs, 1e-3 to 1e12, or `-`")
     }
 }
 
@@ -231,7 +241,7 @@ mod tests {
     fn the_fit_recovers_its_own_model_and_leaves_the_uncompressed_alone() {
         let mut taus: Vec<f64> = (0..40).map(|i| 12_000.0 * 1.03f64.powi(i)).collect();
         taus.push(1e9);
-        let found = PixelResponse::fit(&stack(5.0, &taus, &TIMES_US), 0.0).unwrap();
+        let found = PixelResponse::fit(&stack(5.0, &taus, &TIMES_US), 0.0, Vec::new()).unwrap();
         // f32 amplitudes and the grid of fill times (parabola between steps of 2 %) leave parts in 1e4.
         assert!((found.softness / 5.0 - 1.0).abs() < 0.01, "{}", found.softness);
         assert_eq!(found.full_well_time_us[0][40], None);
@@ -239,7 +249,7 @@ mod tests {
             assert!((f64::from(fitted.unwrap()) / tau - 1.0).abs() < 5e-3, "{tau} {fitted:?}");
         }
         assert!(found.fit.residual < 1e-3 && found.fit.held_out_residual.unwrap() < 2e-3, "{:?}", found.fit);
-        assert!(found.check().is_ok());
+        assert!(found.check_at(&Check::of("pixel")).is_ok());
         let text = serde_json::to_string(&found).unwrap();
         assert!(text.contains(" -\""), "{text}");
         assert_eq!(serde_json::from_str::<PixelResponse>(&text).unwrap(), found);
@@ -252,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_linear_scene_has_no_fill_times() {
-        let error = PixelResponse::fit(&stack(5.0, &[1e9; 50], &TIMES_US), 0.0).unwrap_err();
+        let error = PixelResponse::fit(&stack(5.0, &[1e9; 50], &TIMES_US), 0.0, Vec::new()).unwrap_err();
         assert_eq!(error, ResponseError::NoCompression);
     }
 

@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::ResponseError;
 use super::well::SoftWell;
-use super::{ResponseError, check_softness};
 use crate::numerics::minimum::minimum;
-use crate::terms::lut::{ExposureSample, LutAnswer};
-use crate::terms::{FitQuality, ParameterError, Source, require, root_mean_square};
+use crate::terms::check::{Check, ParameterError, Parameters};
+use crate::terms::lut::{LutAnswer, RelativeSample};
+use crate::terms::{FitQuality, Source, root_mean_square};
 
 /// One well for the image: its mean amplitude follows `t f′(t/τ)`, so that the multiplier is
 /// `S(t) = t_ref f′(t_ref/τ) / (t f′(t/τ))` (methods, section 2), 1 at the reference time.
@@ -26,15 +27,15 @@ pub struct ScalarResponse {
 }
 
 impl ScalarResponse {
-    /// Fits τ and p to the mean amplitudes of an exposure sweep, up to their peak. `samples` in any order. Held-out
+    /// Fits τ and p to the mean curve of an exposure sweep, up to its peak. `samples` in any order. Held-out
     /// residual: every fifth inner sample in turn, from a fit to the others.
     ///
     /// # Errors
     /// [`ResponseError`] when fewer than four times are usable.
-    pub fn fit(samples: &[ExposureSample]) -> Result<Self, ResponseError> {
-        let fine = |s: &&ExposureSample| s.mean_amplitude_dn > 0.0 && s.mean_amplitude_dn.is_finite();
+    pub fn fit(samples: &[RelativeSample], fitted_on: Vec<Source>) -> Result<Self, ResponseError> {
+        let fine = |s: &&RelativeSample| s.relative_amplitude > 0.0 && s.relative_amplitude.is_finite();
         let mut points: Vec<[f64; 2]> =
-            samples.iter().filter(fine).map(|s| [s.integration_time_us, s.mean_amplitude_dn.ln()]).collect();
+            samples.iter().filter(fine).map(|s| [s.integration_time_us, s.relative_amplitude.ln()]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let peak = (0..points.len()).rev().max_by(|&a, &b| points[a][1].total_cmp(&points[b][1]));
         points.truncate(peak.map_or(0, |peak| peak + 1));
@@ -49,7 +50,7 @@ impl ScalarResponse {
             held_out_residual: held_out(&points),
         };
         let valid_integration_time_us = [points[0][0], points[found - 1][0]];
-        Ok(Self { full_well_time_us, softness, valid_integration_time_us, fitted_on: Vec::new(), fit })
+        Ok(Self { full_well_time_us, softness, valid_integration_time_us, fitted_on, fit })
     }
 
     /// The multiplier for one integration time (µs, positive), 1 at `reference_us`.
@@ -68,21 +69,21 @@ impl ScalarResponse {
             LutAnswer::Inside(multiplier)
         }
     }
+}
 
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
+impl Parameters for ScalarResponse {
+    const NAME: &'static str = "scalar";
+
+    fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         let [min_us, max_us] = self.valid_integration_time_us;
         let tau_us = self.full_well_time_us;
-        require(
-            (1e-3..=1e12).contains(&tau_us),
-            "response.scalar.full_well_time_us",
-            tau_us,
-            "a time in µs, 1e-3 to 1e12",
-        )?;
-        check_softness("response.scalar.softness", self.softness)?;
+        let fine = (1e-3..=1e12).contains(&tau_us);
+        here.at("full_well_time_us").require(fine, tau_us, "a time in µs, 1e-3 to 1e12")?;
+        SoftWell { softness: self.softness }.check_at(here)?;
         // Beyond ten wells nothing that is left of a modulation means anything.
         let inside = 0.0 < min_us && min_us < max_us && max_us <= 10.0 * tau_us;
         let range = format!("{min_us}..{max_us}");
-        require(inside, "response.scalar.valid_integration_time_us", range, "a range of µs up to 10 τ")
+        here.at("valid_integration_time_us").require(inside, range, "a range of µs up to 10 τ")
     }
 }
 
@@ -132,12 +133,9 @@ mod tests {
     use super::*;
     use crate::terms::{Lut, linear};
 
-    fn samples(times: &[f64], curve: impl Fn(f64) -> f64) -> Vec<ExposureSample> {
-        let sample = |&t: &f64| ExposureSample {
-            integration_time_us: t,
-            mean_amplitude_dn: curve(t),
-            frame_spread: 0.0,
-        };
+    fn samples(times: &[f64], curve: impl Fn(f64) -> f64) -> Vec<RelativeSample> {
+        let sample =
+            |&t: &f64| RelativeSample { integration_time_us: t, relative_amplitude: curve(t), spread: 0.0 };
         times.iter().map(sample).collect()
     }
 
@@ -159,7 +157,7 @@ mod tests {
     fn one_tau_equals_the_table_of_its_own_curve() {
         let scalar = response(30_000.0, 5.0);
         let well = SoftWell { softness: 5.0 };
-        let lut = Lut::fit(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / 30_000.0)), 8200.0).unwrap();
+        let lut = Lut::of_curve(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / 30_000.0)), 8200.0).unwrap();
         for time_us in TIMES_US {
             let ratio = inside(scalar.at(time_us, 8200.0)) / inside(lut.at(time_us));
             assert!((ratio - 1.0).abs() < 1e-12, "{time_us}: {ratio}");
@@ -182,7 +180,8 @@ mod tests {
         for (tau_us, softness) in [(25_000.0, 4.0), (30_000.0, 8.0), (40_000.0, 5.5)] {
             let well = SoftWell { softness };
             let found =
-                ScalarResponse::fit(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / tau_us))).unwrap();
+                ScalarResponse::fit(&samples(&TIMES_US, |t| 0.3 * t * well.slope(t / tau_us)), Vec::new())
+                    .unwrap();
             // Without noise only the last grid's step is left, and the softness where hardly anything is compressed.
             assert!((found.full_well_time_us / tau_us - 1.0).abs() < 1e-3, "{found:?}");
             assert!((found.softness / softness - 1.0).abs() < 1e-2, "{found:?}");
@@ -192,7 +191,7 @@ mod tests {
 
     #[test]
     fn too_few_times_are_refused() {
-        let error = ScalarResponse::fit(&samples(&TIMES_US[..3], |t| t)).unwrap_err();
+        let error = ScalarResponse::fit(&samples(&TIMES_US[..3], |t| t), Vec::new()).unwrap_err();
         assert_eq!(error, ResponseError::TooFewTimes { found: 3, expected: 4 });
     }
 }

@@ -1,7 +1,7 @@
 //! A still scene at several times, as the fits by amplitude use it.
 
-use super::evidence::{AmplitudeStack, rising};
 use super::fill_time::Sample;
+use super::means::{AmplitudeStack, rising};
 use crate::numerics::statistics::median;
 
 /// Samples of a pixel that a fit needs.

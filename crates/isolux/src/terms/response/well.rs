@@ -3,6 +3,8 @@
 //! `f(x) = x / (1 + x^p)^(1/p)`, x the linear fill (methods, section 1). Its slope f′ is what is left of a small
 //! modulation, `a / a_lin ≈ f′(x)`: eq. 3 of Stürmer, Penne and Hornegger (2008).
 
+use crate::terms::check::{Check, ParameterError};
+
 /// The shape of a soft full well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftWell {
@@ -13,6 +15,12 @@ pub struct SoftWell {
 impl SoftWell {
     /// Softnesses that a fit may find: 1 bends from the first photon on, 16 is nearly a corner.
     pub const SOFTNESS_LIMITS: std::ops::RangeInclusive<f64> = 1.0..=16.0;
+
+    /// Refuses a softness that no fit gives.
+    pub(super) fn check_at(self, here: &Check<'_>) -> Result<(), ParameterError> {
+        let fine = Self::SOFTNESS_LIMITS.contains(&self.softness);
+        here.at("softness").require(fine, self.softness, "a softness from 1 to 16")
+    }
 
     /// f: kept fill of a linear fill x ≥ 0.
     #[must_use]

@@ -5,9 +5,10 @@
 //! wall, at one amplitude per time; the board's positions fill the pixels otherwise, so no position is corrected by
 //! it. Compressed positions are outliers to the majority of the times that see the same distance uncompressed.
 
-use super::rows::{Model, Rows, count_positions};
-use super::select::{best, reweighted};
-use super::{Harmonic, Spline};
+use super::error::LEAST_POSITIONS;
+use super::least_squares::{LeastSquares, Model, count_positions};
+use super::select::{Robust, best, reweighted};
+use super::{Harmonic, Law, Spline, SplineError};
 use crate::numerics::bspline::Basis;
 use crate::numerics::statistics::median;
 use crate::terms::cubic::{Decay, Scaling};
@@ -29,42 +30,9 @@ pub struct SplineUse {
     pub outliers: usize,
 }
 
-/// Why no spline could be fitted.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SplineError {
-    /// Too few positions.
-    #[error(
-        "{found} positions found, at least {} expected: record the target at more distances",
-        Spline::LEAST_POSITIONS
-    )]
-    TooFewPositions {
-        /// Number found.
-        found: usize,
-    },
-    /// The decays do not reach the reference distance.
-    #[error(
-        "no reference decay covers the reference distance of {reference_m} m: record there, or choose another with \
-         --reference-distance-m"
-    )]
-    ReferenceOutside {
-        /// Reference asked for, m.
-        reference_m: f64,
-    },
-    /// The positions do not determine the law.
-    #[error("the positions do not determine a law over distance: record more distances, evenly spread")]
-    Undetermined,
-    /// The law is beyond all reason somewhere.
-    #[error("the law is impossible ({found}): record more distances, evenly spread")]
-    Impossible {
-        /// What is.
-        found: String,
-    },
-}
-
 impl Spline {
     /// Positions that a spline needs; with fewer it would follow the noise of each.
-    pub const LEAST_POSITIONS: usize = 8;
+    pub const LEAST_POSITIONS: usize = LEAST_POSITIONS;
 
     /// Fits the law to reference decays of any number of integration times; says for each how it was used.
     ///
@@ -90,34 +58,18 @@ impl Spline {
         }
         let basis = Basis::new(range[0].ln(), range[1].ln(), INTERVALS);
         let frequency_hz = modulation_frequency_hz.filter(|f| *f > 0.0 && f.is_finite());
-        let rows = Rows::new(&chosen, basis, reference_m, frequency_hz);
+        let rows = LeastSquares::new(&chosen, basis, reference_m, frequency_hz);
         let robust = best(&rows, frequency_hz.is_some()).ok_or(SplineError::Undetermined)?;
+        let law = in_gauge(&robust, basis, reference_m, range, frequency_hz);
         let relative = |row: usize| robust.solution.residuals[row].exp_m1();
-        let mut spline = Self {
-            version: Self::VERSION,
-            reference_distance_m: reference_m,
-            valid_distance_m: range,
-            coefficients: robust.solution.coefficients[..basis.len()].to_vec(),
-            harmonic: frequency_hz.filter(|_| robust.model.harmonic).map(|modulation_frequency_hz| {
-                Harmonic {
-                    modulation_frequency_hz,
-                    cosine: robust.solution.coefficients[basis.len()],
-                    sine: robust.solution.coefficients[basis.len() + 1],
-                }
-            }),
-            curvature_weight: robust.model.curvature_weight,
-            fitted_on: Vec::new(),
-            fit: FitQuality {
-                points: rows.len(),
-                residual: root_mean_square((0..rows.len()).map(relative).filter(|r| r.is_finite()))
-                    .unwrap_or(0.0),
-                held_out_residual: held_out(&rows, robust.model, &robust.weights),
-            },
-            warnings: Vec::new(),
+        let fit = FitQuality {
+            points: rows.len(),
+            residual: root_mean_square((0..rows.len()).map(relative).filter(|r| r.is_finite()))
+                .unwrap_or(0.0),
+            held_out_residual: held_out(&rows, robust.model, &robust.weights),
         };
-        // The gauge: B-splines sum to 1, so a constant added to all adds it to ln h.
-        let at_reference = spline.ln_response(reference_m);
-        spline.coefficients.iter_mut().for_each(|c| *c -= at_reference);
+        let (version, fitted_on, warnings) = (Self::VERSION, Vec::new(), Vec::new());
+        let spline = Self { version, law, fitted_on, fit, warnings };
         spline.check().map_err(|error| SplineError::Impossible { found: error.to_string() })?;
         let report = |(index, decay): (usize, &Decay)| {
             let number = used.iter().position(|&used| used == index);
@@ -138,6 +90,32 @@ impl Spline {
         let uses = decays.iter().enumerate().map(report).collect();
         Ok((spline, uses))
     }
+}
+
+/// The law that was found. B-splines sum to 1, so a constant added to all adds it to ln h: it is 0 at the reference.
+fn in_gauge(
+    robust: &Robust,
+    basis: Basis,
+    reference_distance_m: f64,
+    valid_distance_m: [f64; 2],
+    frequency_hz: Option<f64>,
+) -> Law {
+    let found = &robust.solution.coefficients;
+    let harmonic = frequency_hz.filter(|_| robust.model.harmonic).map(|modulation_frequency_hz| Harmonic {
+        modulation_frequency_hz,
+        cosine: found[basis.len()],
+        sine: found[basis.len() + 1],
+    });
+    let mut law = Law {
+        reference_distance_m,
+        valid_distance_m,
+        coefficients: found[..basis.len()].to_vec(),
+        harmonic,
+        curvature_weight: robust.model.curvature_weight,
+    };
+    let at_reference = law.ln_response(reference_distance_m);
+    law.coefficients.iter_mut().for_each(|c| *c -= at_reference);
+    law
 }
 
 fn range_of(decay: &Decay) -> [f64; 2] {
@@ -188,7 +166,7 @@ fn connected(decays: &[Decay], reference_m: f64) -> Result<(Vec<usize>, [f64; 2]
 }
 
 /// Relative error (root mean square) on points that the fit has not seen.
-fn held_out(rows: &Rows, model: Model, weights: &[f64]) -> Option<f64> {
+fn held_out(rows: &LeastSquares, model: Model, weights: &[f64]) -> Option<f64> {
     let groups = if rows.decays >= 2 { rows.decays } else { rows.positions };
     let group = |row: usize| if rows.decays >= 2 { rows.decay[row] } else { rows.position[row] };
     let mut errors = Vec::new();

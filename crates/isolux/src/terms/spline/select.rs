@@ -1,6 +1,6 @@
 //! Robust weights, and the choice of curvature weight and harmonic by cross-validation.
 
-use super::rows::{Model, Rows, Solution};
+use super::least_squares::{LeastSquares, Model, Solution};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
 
@@ -28,7 +28,7 @@ pub(super) struct Robust {
 
 /// The robust fit with the model that predicts positions best that are left out. With `with_harmonic`, the harmonic
 /// is used where it predicts better than the spline alone.
-pub(super) fn best(rows: &Rows, with_harmonic: bool) -> Option<Robust> {
+pub(super) fn best(rows: &LeastSquares, with_harmonic: bool) -> Option<Robust> {
     let middle = Model { curvature_weight: 1e-5, harmonic: with_harmonic };
     let mut fit = reweighted(rows, middle, &vec![1.0; rows.len()])?;
     for _ in 0..ROUNDS {
@@ -44,7 +44,7 @@ pub(super) fn best(rows: &Rows, with_harmonic: bool) -> Option<Robust> {
 
 /// Iteratively reweighted least squares of the points whose prior weight is above 0: Huber's weights (1964,
 /// k = 1.345) until they settle, then Tukey's biweight (c = 4.685 σ, σ = 1.4826 MAD of the residuals).
-pub(super) fn reweighted(rows: &Rows, model: Model, prior: &[f64]) -> Option<Robust> {
+pub(super) fn reweighted(rows: &LeastSquares, model: Model, prior: &[f64]) -> Option<Robust> {
     let mut weights = prior.to_vec();
     let mut last = rows.normal(weights.clone())?.solve(model)?;
     for iteration in 0..ITERATIONS {
@@ -78,7 +78,7 @@ pub(super) fn reweighted(rows: &Rows, model: Model, prior: &[f64]) -> Option<Rob
 
 /// The model with the least weighted squared error on inner positions that are left out in turn; of equals, the
 /// smoother one without the harmonic.
-fn choose(rows: &Rows, with_harmonic: bool, weights: &[f64]) -> Option<Model> {
+fn choose(rows: &LeastSquares, with_harmonic: bool, weights: &[f64]) -> Option<Model> {
     let weights_tried = EXPONENTS.rev().map(|exponent| 10f64.powf(0.5 * f64::from(exponent)));
     let harmonics = [false, true].into_iter().take(if with_harmonic { 2 } else { 1 });
     let models: Vec<Model> = harmonics

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::terms::DistanceLaw;
 use crate::terms::cubic::{Decay, DecayPoint, Scaling};
 
 const FREQUENCY_HZ: f64 = 20e6;
@@ -43,7 +44,7 @@ fn four_decays(noise: f64) -> Vec<Decay> {
 
 /// Largest and root mean square error of ln h over the valid range.
 fn errors(spline: &Spline) -> (f64, f64) {
-    let [min, max] = spline.valid_distance_m;
+    let [min, max] = spline.law.valid_distance_m;
     let errors: Vec<f64> = (0..=300)
         .map(|i| min * (max / min).powf(f64::from(i) / 300.0))
         .map(|d| spline.ln_response(d) - (response(d) / response(0.75)).ln())
@@ -62,7 +63,7 @@ fn a_known_law_is_recovered_within_noise() {
     let (largest, average) = errors(&spline);
     assert!(average < NOISE * (21.0f64 / 88.0).sqrt() * 2.0, "{average:e}");
     assert!(largest < NOISE * (21.0f64 / 88.0).sqrt() * 5.0, "{largest:e}");
-    let harmonic = spline.harmonic.unwrap();
+    let harmonic = spline.law.harmonic.unwrap();
     // Standard error of a coefficient of a cosine among 88 points: noise √(2/88), twice for the spline beside it.
     let error = 5.0 * 2.0 * NOISE * (2.0f64 / 88.0).sqrt();
     assert!((harmonic.cosine - 0.02).abs() < error && harmonic.sine.abs() < error, "{harmonic:?}");
@@ -79,7 +80,7 @@ fn a_known_law_is_recovered_within_noise() {
 #[test]
 fn without_the_frequency_the_spline_alone_follows() {
     let (spline, _) = Spline::fit(&four_decays(0.003), 0.75, None).unwrap();
-    assert_eq!(spline.harmonic, None);
+    assert_eq!(spline.law.harmonic, None);
     assert!(errors(&spline).1 < 0.005, "{:?}", errors(&spline));
 }
 
@@ -90,7 +91,7 @@ fn a_camera_without_the_harmonic_gets_next_to_none() {
         point.amplitude_dn /= 1.0 + 0.02 * Harmonic::angle(FREQUENCY_HZ, point.distance_m).cos();
     }
     let (spline, _) = Spline::fit(&decays, 0.75, Some(FREQUENCY_HZ)).unwrap();
-    let found = spline.harmonic.map_or(0.0, |harmonic| harmonic.cosine.hypot(harmonic.sine));
+    let found = spline.law.harmonic.map_or(0.0, |harmonic| harmonic.cosine.hypot(harmonic.sine));
     assert!(found < 10.0 * 0.003 * (2.0f64 / 88.0).sqrt(), "{found}");
 }
 
@@ -124,7 +125,7 @@ fn a_decay_far_from_the_reference_is_placed_by_its_level_and_one_without_overlap
     let (spline, uses) = Spline::fit(&decays, 0.75, Some(FREQUENCY_HZ)).unwrap();
     let scalings: Vec<_> = uses.iter().map(|used| used.scaling).collect();
     assert_eq!(scalings, [Scaling::AtReference, Scaling::OntoOthers, Scaling::LeftOut]);
-    assert_eq!(spline.valid_distance_m, [0.3, 4.0]);
+    assert_eq!(spline.law.valid_distance_m, [0.3, 4.0]);
     // Without noise, what is left is what 24 intervals and the exp(cos) of the harmonic, h₃²/4, leave: 1e-4; the
     // overlap of a few positions carries it on.
     assert!(errors(&spline).0 < 2e-3, "{:?}", errors(&spline));
@@ -138,7 +139,7 @@ fn outside_its_range_it_goes_on_as_the_square_and_the_table_says_the_same() {
         let slope = (spline.multiplier(outside) / spline.multiplier(edge)).ln() / (outside / edge).ln();
         assert!((slope - 2.0).abs() < 1e-12, "{slope}");
     }
-    let DistanceLaw { polynomial: square, table: Some(table) } = spline.distance_law() else {
+    let DistanceLaw { polynomial: square, table: Some(table) } = spline.law.distance_law() else {
         panic!("a spline has a table")
     };
     for i in 0..=50_000 {
@@ -176,16 +177,18 @@ fn edited_parameters_are_checked() {
         spline.check().unwrap_err().field
     };
     assert_eq!(spoil(|s| s.version = 2), "spline.version");
-    assert_eq!(spoil(|s| s.valid_distance_m = [1.0, 1.0]), "spline.valid_distance_m");
-    assert_eq!(spoil(|s| s.valid_distance_m = [0.0, 1.0]), "spline.valid_distance_m");
-    assert_eq!(spoil(|s| s.reference_distance_m = 9.0), "spline.reference_distance_m");
-    assert_eq!(spoil(|s| s.coefficients.truncate(3)), "spline.coefficients");
-    assert_eq!(spoil(|s| s.coefficients[5] = f64::NAN), "spline.coefficients");
-    assert_eq!(spoil(|s| s.coefficients[5] = 900.0), "spline.coefficients");
-    assert_eq!(spoil(|s| s.curvature_weight = -1.0), "spline.curvature_weight");
+    assert_eq!(spoil(|s| s.law.valid_distance_m = [1.0, 1.0]), "spline.valid_distance_m");
+    assert_eq!(spoil(|s| s.law.valid_distance_m = [0.0, 1.0]), "spline.valid_distance_m");
+    assert_eq!(spoil(|s| s.law.reference_distance_m = 9.0), "spline.reference_distance_m");
+    assert_eq!(spoil(|s| s.law.coefficients.truncate(3)), "spline.coefficients");
+    assert_eq!(spoil(|s| s.law.coefficients[5] = f64::NAN), "spline.coefficients");
+    assert_eq!(spoil(|s| s.law.coefficients[5] = 900.0), "spline.coefficients");
+    assert_eq!(spoil(|s| s.law.curvature_weight = -1.0), "spline.curvature_weight");
     let harmonic =
         |modulation_frequency_hz, sine| Some(Harmonic { modulation_frequency_hz, cosine: 0.0, sine });
-    let spoil_harmonic = |harmonic| Spline { harmonic, ..good.clone() }.check().unwrap_err().field;
+    let spoil_harmonic = |harmonic| {
+        Spline { law: Law { harmonic, ..good.law.clone() }, ..good.clone() }.check().unwrap_err().field
+    };
     assert_eq!(spoil_harmonic(harmonic(FREQUENCY_HZ, 0.7)), "spline.harmonic");
     assert_eq!(spoil_harmonic(harmonic(1e12, 0.0)), "spline.harmonic.modulation_frequency_hz");
     assert_eq!(spoil_harmonic(harmonic(FREQUENCY_HZ, f64::NAN)), "spline.harmonic");

@@ -1,4 +1,4 @@
-//! One frame of a distance sweep: what the central window says.
+//! What the central window of one frame of a distance sweep says.
 
 use crate::frame::{Frame, Window};
 use crate::numerics::differences;

@@ -3,7 +3,6 @@
 use super::{MotionFinding, SceneObservations};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::joint::{AngleModel, DistanceModel, JointModel, Observation, TimeModel};
-use crate::calibration::REFERENCE_TIME_US;
 use crate::numerics::statistics::median;
 use crate::terms::profile::Places;
 
@@ -12,7 +11,7 @@ const UNEVENNESS: f64 = 0.01;
 
 /// Observations, and what they may be explained by.
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub(super) struct JointInput {
     pub(super) observations: Vec<Observation>,
     /// Frame of each, counted through all recordings.
     pub(super) frames: Vec<u32>,
@@ -21,13 +20,13 @@ pub(super) struct Rows {
     pub(super) times_us: Vec<f64>,
 }
 
-impl Rows {
+impl JointInput {
     /// `None` when no recording has an observation.
     pub(super) fn new(settings: &CalibrateSettings, recordings: &[SceneObservations]) -> Option<Self> {
         let first = recordings.iter().find(|recording| !recording.observations.is_empty())?;
         let places = Places::new(first.shape, first.intrinsics.as_ref());
         let times_us = times_us(recordings);
-        let mut rows = Self {
+        let mut input = Self {
             observations: Vec::new(),
             frames: Vec::new(),
             model: model(settings, recordings, &times_us, places),
@@ -38,9 +37,9 @@ impl Rows {
         for recording in recordings {
             let (mut surfaces, mut frames) = (0, 0);
             for seen in &recording.observations {
-                let time = rows.times_us.iter().position(|time| *time == seen.integration_time_us);
+                let time = input.times_us.iter().position(|time| *time == seen.integration_time_us);
                 let [row, column] = seen.pixel.map(f64::from);
-                rows.observations.push(Observation {
+                input.observations.push(Observation {
                     surface: first_surface + seen.surface,
                     time: time.unwrap_or(0) as u16,
                     ln_amplitude: seen.ln_amplitude,
@@ -49,12 +48,12 @@ impl Rows {
                     cosine: seen.cosine,
                     weight: (usual / variance(seen.sigma)) as f32,
                 });
-                rows.frames.push(first_frame + seen.frame);
+                input.frames.push(first_frame + seen.frame);
                 (surfaces, frames) = (surfaces.max(seen.surface + 1), frames.max(seen.frame + 1));
             }
             (first_surface, first_frame) = (first_surface + surfaces, first_frame + frames);
         }
-        Some(rows)
+        Some(input)
     }
 }
 
@@ -77,7 +76,7 @@ fn model(
 ) -> JointModel {
     let used = recordings.iter().filter(|recording| !recording.observations.is_empty());
     let moved = used.into_iter().any(|recording| recording.motion != MotionFinding::Still);
-    let reference_us = settings.reference.integration_time_us.unwrap_or(REFERENCE_TIME_US);
+    let reference_us = settings.reference_time_us();
     let away = |index: &usize| (times_us[*index] / reference_us).ln().abs();
     let reference = (0..times_us.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
     JointModel {

@@ -1,10 +1,10 @@
 //! The factors of the joint model: how well they predict, and how they become terms of the calibration.
 
+use std::fmt;
 use std::ops::Range;
 
-use super::FitWarning;
-use super::joint::{self, Factor, JointFit, JointModel, Observation};
-use crate::calibration::Calibration;
+use super::joint::{self, Factor, JointFit, JointModel, Observation, Refusal};
+use crate::advice::Advice;
 use crate::numerics::robust::TUKEY_CUTOFF;
 use crate::terms::{Angle, FitQuality, Profile, Source, Spline, root_mean_square};
 
@@ -44,16 +44,66 @@ pub(super) fn held_out(
     (squares.1 > 0.0).then(|| (squares.0 / squares.1).sqrt())
 }
 
+/// A factor that is observed, but becomes no term.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FactorWarning {
+    /// A factor that the observations do not determine.
+    Refused {
+        /// Why.
+        reason: Refusal,
+        /// Unknowns of the model beside the surfaces' brightnesses.
+        unknowns: usize,
+        /// Rank of its reduced normal matrix.
+        rank: usize,
+    },
+    /// A distance law that was seen, but not at the reference distance.
+    ReferenceNotSeen {
+        /// Reference, m.
+        reference_m: f64,
+        /// Distances that were seen, m.
+        seen_m: [f64; 2],
+    },
+}
+
+impl FactorWarning {
+    /// The refusal of one factor of a fit, where there is one.
+    pub(super) fn refused(fit: &JointFit, factor: Factor) -> Option<Self> {
+        let reason = fit.refusal(factor)?.clone();
+        Some(Self::Refused { reason, unknowns: fit.unknowns, rank: fit.rank })
+    }
+
+    /// What the user can do about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Refused { .. } => None,
+            Self::ReferenceNotSeen { .. } => Some(Advice::ReferenceDistance { distance_m: None }),
+        }
+    }
+}
+
+impl fmt::Display for FactorWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused { reason, unknowns, rank } => {
+                write!(f, "no {reason} (rank {rank} of {unknowns} unknowns)")
+            }
+            Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
+                f,
+                "no spline, surfaces were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance of                  {reference_m} m: record there, or choose another"
+            ),
+        }
+    }
+}
+
 /// A fit, and what is to be said of it in the calibration.
 pub(super) struct Fitted<'a> {
-    /// What was observed: `targets` or `scenes`.
-    pub(super) of: &'static str,
     pub(super) observations: &'a [Observation],
     pub(super) fit: &'a JointFit,
     pub(super) held_out_residual: Option<f64>,
-    /// Distance at which the law is 1, m.
-    pub(super) reference_m: f64,
     pub(super) fitted_on: Vec<Source>,
+    /// What was left out, and why, in words.
     pub(super) warnings: Vec<String>,
 }
 
@@ -68,37 +118,20 @@ impl Fitted<'_> {
         }
     }
 
-    /// Writes the determined factors over distance, image and angle into `calibration`.
-    pub(super) fn write(&self, calibration: &mut Calibration) -> Option<FitWarning> {
-        let spline = self.spline();
-        let terms = &mut calibration.terms;
-        if let Ok(Some(spline)) = &spline {
-            terms.spline = Some(spline.clone());
-        }
-        terms.profile = self.profile().or(terms.profile.take());
-        terms.angle = self.angle().or(terms.angle.take());
-        spline.err()
-    }
-
     /// The law over distance, where it is determined.
-    pub(super) fn spline(&self) -> Result<Option<Spline>, FitWarning> {
+    pub(super) fn spline(&self) -> Result<Option<Spline>, FactorWarning> {
         let Some(law) = &self.fit.distance else { return Ok(None) };
-        let [min_m, max_m] = law.valid_distance_m;
+        let (reference_m, seen_m) = (law.reference_distance_m, law.valid_distance_m);
+        if !(seen_m[0]..=seen_m[1]).contains(&reference_m) {
+            return Err(FactorWarning::ReferenceNotSeen { reference_m, seen_m });
+        }
         let spline = Spline {
             version: Spline::VERSION,
-            reference_distance_m: self.reference_m,
-            valid_distance_m: law.valid_distance_m,
-            coefficients: law.coefficients.clone(),
-            harmonic: law.harmonic,
-            curvature_weight: law.curvature_weight,
+            law: law.clone(),
             fitted_on: self.fitted_on.clone(),
             fit: self.quality(),
             warnings: self.warnings.clone(),
         };
-        if !(min_m..=max_m).contains(&self.reference_m) {
-            let (of, reference_m, seen_m) = (self.of, self.reference_m, law.valid_distance_m);
-            return Err(FitWarning::ReferenceNotSeen { of, reference_m, seen_m });
-        }
         Ok(Some(spline).filter(|spline| spline.check().is_ok()))
     }
 
@@ -109,11 +142,7 @@ impl Fitted<'_> {
             |cell: usize| profile.cell_errors[cell].is_some_and(|error| error <= LARGEST_CELL_ERROR);
         let profile = Profile {
             version: Profile::VERSION,
-            height: profile.places.shape.height,
-            width: profile.places.shape.width,
-            origin_px: profile.places.origin,
-            radial: profile.radial,
-            tensor: profile.tensor.clone(),
+            map: profile.map.clone(),
             support: Profile::support_map(supported),
             fitted_on: self.fitted_on.clone(),
             fit: self.quality(),

@@ -1,12 +1,14 @@
 //! What the solved problem says, in gauge.
 
-use super::determine::{Factor, Finding, Refusal, findings};
+use super::determine::findings;
+use super::factor::Factor;
+use super::finding::Finding;
+use super::model::{AngleModel, JointModel, LAW_CURVATURE};
 use super::problem::Problem;
+use super::refusal::Refusal;
 use super::robust::Robust;
-use super::{AngleModel, JointModel, LAW_CURVATURE};
-use crate::numerics::bspline::Basis;
-use crate::terms::profile::{Places, Surface};
-use crate::terms::spline::Harmonic;
+use crate::terms::profile::Map;
+use crate::terms::spline::{Harmonic, Law};
 
 /// The fitted factors. Each is `None` where it was not asked for or is refused.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +18,7 @@ pub struct JointFit {
     /// s of every integration time, 0 at the reference.
     pub ln_time: Option<Vec<f64>>,
     /// The law over distance.
-    pub distance: Option<LawFit>,
+    pub distance: Option<Law>,
     /// The illumination profile.
     pub profile: Option<ProfileFit>,
     /// k, where it was fitted.
@@ -38,53 +40,14 @@ pub struct JointFit {
     pub weights: Vec<f64>,
 }
 
-/// A fitted law over distance: `ln h = −2 ln(d/d_ref) + Σ c_k B_k(ln d) + harmonic`, slope −2 outside.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LawFit {
-    /// Distance at which h = 1, m.
-    pub reference_m: f64,
-    /// Distances between which it was observed, m.
-    pub valid_distance_m: [f64; 2],
-    /// Coefficients of the cubic B-splines on equal intervals of ln d between them, in gauge.
-    pub coefficients: Vec<f64>,
-    /// The aliased harmonic, where the frequency was given.
-    pub harmonic: Option<Harmonic>,
-    /// Weight of the curvature against the mean squared residual, as [`crate::terms::Spline`] tells it.
-    pub curvature_weight: f64,
-}
-
 /// A fitted illumination profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileFit {
-    /// The image coordinates that it is a function of.
-    pub places: Places,
-    /// Coefficients of r² and r⁴.
-    pub radial: [f64; 2],
-    /// Coefficients of the tensor, those of one row of the image after the other, in gauge: ln v is 0 at the origin.
-    pub tensor: Vec<f64>,
-    /// Standard error of ln v in each of the [`Places::CELLS`]; `None` where nothing was seen.
+    /// The map, in gauge: ln v is 0 at the origin.
+    pub map: Map,
+    /// Standard error of ln v in each of the [`Places::CELLS`](crate::terms::profile::Places::CELLS); `None` where
+    /// nothing was seen.
     pub cell_errors: Vec<Option<f64>>,
-}
-
-impl LawFit {
-    /// ln h at a distance (m): 0 at the reference distance.
-    #[must_use]
-    pub fn ln_response(&self, distance_m: f64) -> f64 {
-        let [min_m, max_m] = self.valid_distance_m;
-        let intervals = self.coefficients.len().saturating_sub(3).max(1);
-        let basis = Basis::new(min_m.ln(), max_m.ln(), intervals);
-        let inside_m = distance_m.max(min_m).min(max_m);
-        let harmonic = self.harmonic.map_or(0.0, |harmonic| harmonic.at(inside_m));
-        basis.sum(&self.coefficients, inside_m.ln()) + harmonic - 2.0 * (distance_m / self.reference_m).ln()
-    }
-}
-
-impl ProfileFit {
-    /// ln v at a place: 0 at the origin.
-    #[must_use]
-    pub fn ln_gain(&self, place: [f64; 2]) -> f64 {
-        Surface::new(&self.places).sum(&self.radial, &self.tensor, place)
-    }
 }
 
 impl JointFit {
@@ -131,7 +94,7 @@ fn ln_time(problem: &Problem, robust: &Robust) -> Vec<f64> {
     times.iter().map(|s| s - times[reference]).collect()
 }
 
-fn law(problem: &Problem, robust: &Robust) -> Option<LawFit> {
+fn law(problem: &Problem, robust: &Robust) -> Option<Law> {
     let columns = &problem.columns;
     let (ends, _) = columns.distance?;
     let law = columns.model.distance?;
@@ -143,8 +106,8 @@ fn law(problem: &Problem, robust: &Robust) -> Option<LawFit> {
         cosine: coefficients[columns.harmonic.start],
         sine: coefficients[columns.harmonic.start + 1],
     });
-    Some(LawFit {
-        reference_m: law.reference_m,
+    Some(Law {
+        reference_distance_m: law.reference_m,
         valid_distance_m: ends.map(f64::exp),
         coefficients: coefficients[columns.law.clone()].iter().map(|c| c - gauge).collect(),
         harmonic,
@@ -158,12 +121,12 @@ fn profile(problem: &Problem, robust: &Robust, cell_errors: Vec<Option<f64>>) ->
     columns.surface?;
     let coefficients = robust.coefficients.as_slice();
     let gauge = columns.at_place([0.0; 2]).dot(coefficients);
-    Some(ProfileFit {
+    let map = Map {
         places: columns.model.profile?,
         radial: [coefficients[columns.radial.start], coefficients[columns.radial.start + 1]],
         tensor: coefficients[columns.tensor.clone()].iter().map(|c| c - gauge).collect(),
-        cell_errors,
-    })
+    };
+    Some(ProfileFit { map, cell_errors })
 }
 
 fn rank(robust: &Robust) -> usize {

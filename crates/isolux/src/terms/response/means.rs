@@ -1,4 +1,4 @@
-//! What a still scene delivered at several integration times: the evidence of all tiers but the scalar one.
+//! Means of a still scene at several integration times: what all tiers but the scalar one are fitted to.
 
 use crate::frame::Shape;
 

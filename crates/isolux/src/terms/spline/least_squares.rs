@@ -11,7 +11,7 @@ const SAME_POSITION: f64 = 0.01;
 
 /// The points of all decays, in logarithms.
 #[derive(Clone, Debug)]
-pub(super) struct Rows {
+pub(super) struct LeastSquares {
     pub(super) basis: Basis,
     /// Value of each column at each point: the B-splines, then cos 4φ and sin 4φ where f is known.
     design: Vec<f64>,
@@ -45,14 +45,14 @@ pub(super) struct Solution {
 
 /// Gram matrix and moments of weighted rows, from which every curvature weight is solved.
 pub(super) struct Normal<'a> {
-    rows: &'a Rows,
+    rows: &'a LeastSquares,
     weights: Vec<f64>,
     total: f64,
     gram: DMatrix<f64>,
     moment: DVector<f64>,
 }
 
-impl Rows {
+impl LeastSquares {
     pub(super) fn new(
         decays: &[&Decay],
         basis: Basis,

@@ -1,32 +1,32 @@
 //! Windows of all recordings as observations of the joint model.
 
-use super::TargetWindows;
+use super::{TargetError, TargetWarning, TargetWindows};
+use crate::calibrate::CalibrateSettings;
 use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation, TimeModel};
-use crate::calibrate::{CalibrateError, CalibrateSettings, FitWarning};
+use crate::calibrate::measure_error::common_shape;
 use crate::calibration::{Calibration, REFERENCE_TIME_US};
 use crate::terms::lut::LutAnswer;
 use crate::terms::profile::Places;
 use crate::terms::{Lut, Spline, linear};
 
 /// Windows as observations.
-pub(super) struct Rows {
+pub(super) struct JointInput {
     pub(super) observations: Vec<Observation>,
     /// Frame of each, counted through all recordings.
     pub(super) frames: Vec<u32>,
     pub(super) model: JointModel,
     /// Recording (by number) and label of each surface.
     pub(super) surfaces: Vec<(usize, u8)>,
-    pub(super) reference_m: f64,
     pub(super) times_us: Vec<f32>,
 }
 
-impl Rows {
+impl JointInput {
     pub(super) fn new(
         settings: &CalibrateSettings,
         targets: &[TargetWindows],
         calibration: &Calibration,
-        warnings: &mut Vec<FitWarning>,
-    ) -> Result<Self, CalibrateError> {
+        warnings: &mut Vec<TargetWarning>,
+    ) -> Result<Self, TargetError> {
         let places = places(targets)?;
         warn(targets, warnings);
         let known = Known {
@@ -35,12 +35,11 @@ impl Rows {
             spline: calibration.terms.spline.as_ref(),
         };
         let times_us = if known.lut.is_some() { Vec::new() } else { times(targets) };
-        let mut rows = Self {
+        let mut input = Self {
             observations: Vec::new(),
             frames: Vec::new(),
             model: model(settings, targets, &known, &times_us, places),
             surfaces: Vec::new(),
-            reference_m: settings.reference.distance_m,
             times_us,
         };
         let mut first_frame = 0;
@@ -50,10 +49,10 @@ impl Rows {
                 else {
                     continue;
                 };
-                let time = rows.times_us.iter().position(|time| *time == window.time_us).unwrap_or(0);
-                let surface = rows.surface(number, window.label);
+                let time = input.times_us.iter().position(|time| *time == window.time_us).unwrap_or(0);
+                let surface = input.surface(number, window.label);
                 let [row, column] = window.pixel.map(f64::from);
-                rows.observations.push(Observation {
+                input.observations.push(Observation {
                     surface,
                     time: u16::try_from(time).unwrap_or(u16::MAX),
                     ln_amplitude: (f64::from(window.ln_amplitude) + correction) as f32,
@@ -62,11 +61,12 @@ impl Rows {
                     cosine: window.cosine,
                     weight: window.weight,
                 });
-                rows.frames.push(first_frame + window.frame);
+                input.frames.push(first_frame + window.frame);
             }
-            first_frame += u32::try_from(target.frames).unwrap_or(u32::MAX);
+            let frames = target.source.frames_used + target.source.frames_left_out;
+            first_frame += u32::try_from(frames).unwrap_or(u32::MAX);
         }
-        Ok(rows)
+        Ok(input)
     }
 
     fn surface(&mut self, recording: usize, label: u8) -> u32 {
@@ -152,31 +152,24 @@ fn times(targets: &[TargetWindows]) -> Vec<f32> {
 }
 
 /// Image coordinates that all recordings share.
-fn places(targets: &[TargetWindows]) -> Result<Places, CalibrateError> {
+fn places(targets: &[TargetWindows]) -> Result<Places, TargetError> {
     let used = || targets.iter().filter(|target| !target.is_empty());
-    let Some(first) = used().next().and_then(|target| target.shape.map(|shape| (target, shape))) else {
-        return Err(CalibrateError::Target(JointError::TooFew { found: 0, expected: 2 }));
-    };
-    let (first, shape) = first;
-    if let Some(other) = used().find(|target| target.shape != Some(shape)) {
-        let found = other.shape.map_or_else(|| "no frames".to_owned(), |shape| shape.to_string());
-        let expected = format!("{shape}, as in {}", first.recording);
-        return Err(CalibrateError::TargetShape { recording: other.recording.clone(), found, expected });
-    }
+    let shapes = used().filter_map(|target| target.shape.map(|shape| (&*target.source.recording, shape)));
+    let shape = common_shape(shapes)?.ok_or(JointError::TooFew { found: 0, expected: 2 })?;
     let intrinsics = used().find_map(|target| target.intrinsics);
     Ok(Places::new(shape, intrinsics.as_ref()))
 }
 
-fn warn(targets: &[TargetWindows], warnings: &mut Vec<FitWarning>) {
+fn warn(targets: &[TargetWindows], warnings: &mut Vec<TargetWarning>) {
     for target in targets {
-        let recording = || target.recording.clone();
+        let recording = || target.source.recording.clone();
         if target.is_empty() {
-            warnings.push(FitWarning::NoWindows { recording: recording() });
+            warnings.push(TargetWarning::NoWindows { recording: recording() });
         } else if target.intrinsics.is_none() {
-            warnings.push(FitWarning::NoIntrinsics { recording: recording() });
+            warnings.push(TargetWarning::NoIntrinsics { recording: recording() });
         } else if target.without_normal * 2 > target.len() {
             let (windows, of) = (target.without_normal, target.len());
-            warnings.push(FitWarning::FewNormals { recording: recording(), windows, of });
+            warnings.push(TargetWarning::FewNormals { recording: recording(), windows, of });
         }
     }
 }

@@ -1,0 +1,122 @@
+//! From measured frames to positions of the target, and from positions to the decay of one integration time.
+
+use super::DistanceWarning;
+use super::centre::Measurement;
+use crate::terms::cubic::{Decay, DecayPoint};
+
+/// Decays whose median signal-to-noise ratio is lower are left out: their distances are not reliable.
+const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
+/// Consecutive frames within this distance of the first belong to one position, or within
+/// [`POSITION_STANDARD_ERRORS`] where the distance is noisy.
+const POSITION_TOLERANCE_M: f64 = 0.005;
+/// Two means of one position differ by more once in 15 000 times.
+const POSITION_STANDARD_ERRORS: f64 = 4.0;
+/// The window's mean distance may scatter by this many standard errors before the target counts as moving.
+const STANDARD_ERRORS: f64 = 8.0;
+/// A decay of which fewer frames than this share have a reliable distance is left out as a whole, like the
+/// paper's 0.2 ms: what is left of it is the lucky part of noise.
+const LEAST_RELIABLE_SHARE: f64 = 1.0 / 3.0;
+
+/// What was measured at one integration time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Positions {
+    reliable: Vec<Position>,
+    /// Frames without a reliable distance.
+    pub(super) unreliable: usize,
+}
+
+/// Frames of one place of the target.
+#[derive(Clone, Debug)]
+struct Position {
+    first_frame: usize,
+    measurements: Vec<Measurement>,
+}
+
+impl Positions {
+    /// Adds a frame of this number; where it `follows` the last one without a change of time, it may belong to the same
+    /// position.
+    pub(super) fn add(&mut self, frame: usize, measurement: Measurement, follows: bool) {
+        match self.reliable.last_mut() {
+            Some(last) if follows && last.holds(&measurement) => last.measurements.push(measurement),
+            _ => self.reliable.push(Position { first_frame: frame, measurements: vec![measurement] }),
+        }
+    }
+
+    /// A warning for each position within which the target moved.
+    pub(super) fn moved<'a>(&'a self, recording: &'a str) -> impl Iterator<Item = DistanceWarning> + 'a {
+        self.reliable.iter().filter_map(|position| position.moved(recording))
+    }
+
+    /// The decay and the frames in it, starting where over-saturation ends; `None` when the signal is too weak.
+    pub(super) fn decay(
+        &self,
+        recording: &str,
+        integration_time_us: Option<f64>,
+        warnings: &mut Vec<DistanceWarning>,
+    ) -> Option<(Decay, usize)> {
+        let recording = || recording.to_owned();
+        let reliable: usize = self.reliable.iter().map(|p| p.measurements.len()).sum();
+        let frames = reliable + self.unreliable;
+        if (reliable as f64) < LEAST_RELIABLE_SHARE * frames as f64 {
+            let recording = recording();
+            warnings.push(DistanceWarning::FewReliable { recording, integration_time_us, reliable, frames });
+            return None;
+        }
+        let mut sorted: Vec<&Position> = self.reliable.iter().collect();
+        sorted.sort_by(|a, b| a.mean(|m| m.distance_m).total_cmp(&b.mean(|m| m.distance_m)));
+        let brightness = |p: &&Position| p.mean(|m| m.amplitude_dn);
+        let peak =
+            (0..sorted.len()).max_by(|&a, &b| brightness(&sorted[a]).total_cmp(&brightness(&sorted[b])))?;
+        if peak > 0 {
+            let (recording, from_m) = (recording(), sorted[peak].mean(|m| m.distance_m));
+            let positions = peak;
+            warnings.push(DistanceWarning::OverSaturated {
+                recording,
+                integration_time_us,
+                positions,
+                from_m,
+            });
+        }
+        let usable = &sorted[peak..];
+        let mut ratios: Vec<f64> = usable.iter().map(|p| p.mean(|m| m.signal_to_noise)).collect();
+        ratios.sort_by(f64::total_cmp);
+        let signal_to_noise = ratios[ratios.len() / 2];
+        if signal_to_noise < LEAST_SIGNAL_TO_NOISE {
+            let recording = recording();
+            warnings.push(DistanceWarning::LowSignal { recording, integration_time_us, signal_to_noise });
+            return None;
+        }
+        let points = usable.iter().map(|p| p.point()).collect();
+        let frames = usable.iter().map(|p| p.measurements.len()).sum();
+        Some((Decay { integration_time_us, points }, frames))
+    }
+}
+
+impl Position {
+    fn holds(&self, next: &Measurement) -> bool {
+        self.measurements.first().is_some_and(|first| {
+            let noise_m = POSITION_STANDARD_ERRORS * first.distance_error_m.hypot(next.distance_error_m);
+            (first.distance_m - next.distance_m).abs() <= noise_m.max(POSITION_TOLERANCE_M)
+        })
+    }
+
+    fn mean(&self, value: impl Fn(&Measurement) -> f64) -> f64 {
+        self.measurements.iter().map(value).sum::<f64>() / self.measurements.len() as f64
+    }
+
+    fn point(&self) -> DecayPoint {
+        DecayPoint { distance_m: self.mean(|m| m.distance_m), amplitude_dn: self.mean(|m| m.amplitude_dn) }
+    }
+
+    /// A range of means that noise does not explain.
+    fn moved(&self, recording: &str) -> Option<DistanceWarning> {
+        let distances = || self.measurements.iter().map(|m| m.distance_m);
+        let range_m =
+            distances().fold(f64::NEG_INFINITY, f64::max) - distances().fold(f64::INFINITY, f64::min);
+        let noise_m = self.mean(|m| m.distance_error_m);
+        // Half the tolerance that defines a position: no position can range over more than twice of it.
+        let moved = range_m > (STANDARD_ERRORS * noise_m).max(0.5 * POSITION_TOLERANCE_M);
+        let (recording, frame) = (recording.to_owned(), self.first_frame);
+        moved.then(|| DistanceWarning::TargetMoved { recording, frame, range_m })
+    }
+}

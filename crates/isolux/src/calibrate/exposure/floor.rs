@@ -1,0 +1,50 @@
+//! The noise of the amplitude at the shortest integration time, from consecutive frames.
+
+use std::collections::BTreeMap;
+
+use crate::calibration::NoiseFloor;
+use crate::frame::Frame;
+use crate::frame::Window;
+use crate::numerics::differences;
+
+/// Compares the central window of each frame with that of the frame before.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FloorWatch {
+    /// Values in the window of the previous frame.
+    previous: Option<Vec<f64>>,
+    /// Standard deviations at each time, DN, keyed by the bits of the (positive) time.
+    deviations_dn: BTreeMap<u64, Vec<f64>>,
+}
+
+impl FloorWatch {
+    /// The next frame does not follow the last one.
+    pub(super) fn interrupt(&mut self) {
+        self.previous = None;
+    }
+
+    /// Takes the next frame; the `first` of a run has nothing to be compared with.
+    pub(super) fn push(&mut self, time_us: f64, frame: &Frame, first: bool) {
+        let window = window_values(frame);
+        let deviation = self
+            .previous
+            .as_ref()
+            .filter(|_| !first)
+            .and_then(|before| differences::temporal(before, &window));
+        self.previous = Some(window);
+        self.deviations_dn.entry(time_us.to_bits()).or_default().extend(deviation);
+    }
+
+    /// The floor at the shortest time; `None` where it has no two frames in a row, or quantization hides the noise.
+    pub(super) fn floor(&self) -> Option<NoiseFloor> {
+        let (&bits, deviations) = self.deviations_dn.iter().next()?;
+        let mean = deviations.iter().sum::<f64>() / deviations.len() as f64;
+        (mean > 0.0 && mean.is_finite()).then(|| NoiseFloor::new(mean, f64::from_bits(bits)))
+    }
+}
+
+/// Amplitudes of the central 64×64 pixels, NaN where invalid: enough for a noise figure of 1 %.
+fn window_values(frame: &Frame) -> Vec<f64> {
+    let shape = frame.shape();
+    let value = |i: usize| if frame.is_valid(i) { f64::from(frame.amplitude.values()[i]) } else { f64::NAN };
+    Window::centred(shape, 64).indices(shape).map(value).collect()
+}

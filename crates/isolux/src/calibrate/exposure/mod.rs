@@ -1,0 +1,18 @@
+//! Exposure sweeps: a still scene while the integration time varies. They tell the table over integration time, the
+//! response of the pixels and the noise.
+
+mod evidence;
+mod fit;
+mod floor;
+mod mean_curve;
+mod noise_survey;
+mod sweep;
+mod tiers;
+mod warning;
+
+pub use evidence::ResponseEvidence;
+pub(super) use fit::{TableError, fit};
+pub use noise_survey::{NoiseCells, NoiseSurvey};
+pub use sweep::{ExposureCurve, ExposureSweep};
+pub(super) use tiers::fit_response;
+pub use warning::{ExposureWarning, MissingTier};

@@ -1,0 +1,85 @@
+//! What is odd about recordings without a rig, or what their fit has to leave out.
+
+use std::fmt;
+
+use super::MotionRefusal;
+use crate::advice::Advice;
+use crate::calibrate::exposure::MissingTier;
+use crate::calibrate::factor_terms::FactorWarning;
+use crate::calibrate::joint::JointError;
+use crate::terms::lut::LutError;
+
+/// One finding about scenes, with its numbers.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SceneWarning {
+    /// A scene whose motion could not be told.
+    MotionRefused {
+        /// The recording.
+        recording: String,
+        /// Why.
+        reason: MotionRefusal,
+    },
+    /// A scene without two looks at anything.
+    Useless {
+        /// The recording.
+        recording: String,
+    },
+    /// Scenes from which nothing could be fitted.
+    NothingFitted {
+        /// Why.
+        reason: JointError,
+    },
+    /// A scene in which neither camera nor integration time changes.
+    NothingVaries,
+    /// Integration times that scenes give no table of.
+    NoTable {
+        /// Why.
+        reason: LutError,
+    },
+    /// A tier of the response that is not fitted.
+    NoTier(MissingTier),
+    /// A term that scenes determine, but something better is there.
+    TermKept {
+        /// The term.
+        term: &'static str,
+    },
+    /// A factor that becomes no term.
+    Factor(FactorWarning),
+}
+
+impl SceneWarning {
+    /// What the user can do about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::NoTable { reason } => reason.advice(),
+            Self::Factor(factor) => factor.advice(),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for SceneWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MotionRefused { recording, reason } => write!(f, "{recording}: left out, {reason}"),
+            Self::Useless { recording } => write!(
+                f,
+                "{recording}: left out, no surface was found in two frames: too dim, too textured, too few frames, or \
+                 everything moved"
+            ),
+            Self::NothingFitted { reason } => write!(f, "scenes: no term, {reason}"),
+            Self::NothingVaries => f.write_str(
+                "scenes: no term, neither the camera nor the integration time changes: whatever the amplitudes are, it may \
+                 be the surfaces' reflectivity",
+            ),
+            Self::NoTable { reason } => write!(f, "scenes: no lut, {reason}"),
+            Self::NoTier(missing) => missing.fmt(f),
+            Self::TermKept { term } => {
+                write!(f, "scenes: `{term}` is that of the sweeps or targets, which know more; the scenes' is dropped")
+            }
+            Self::Factor(factor) => write!(f, "scenes: {factor}"),
+        }
+    }
+}

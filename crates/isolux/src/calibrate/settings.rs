@@ -1,0 +1,45 @@
+//! What the user decides about a calibration.
+
+use crate::calibration::{REFERENCE_TIME_US, Reference};
+
+/// What the user decides about a calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibrateSettings {
+    /// Conditions under which every multiplier is 1.
+    pub reference: Reference,
+    /// Side of the central measurement window of a distance sweep, pixels; 20 in the paper.
+    pub window_px: usize,
+    /// Frames dropped after each change of the integration time; 50 in the paper.
+    pub skip_frames: usize,
+    /// Integration times to leave out, µs.
+    pub exclude_time_us: Vec<f64>,
+    /// Modulation frequency of the sweeps, Hz, where it is known: the spline then allows for the aliased harmonic, and
+    /// the response of the raw bins repairs the distance.
+    pub modulation_frequency_hz: Option<f64>,
+}
+
+impl Default for CalibrateSettings {
+    fn default() -> Self {
+        Self {
+            reference: Reference::default(),
+            window_px: 20,
+            skip_frames: 0,
+            exclude_time_us: Vec::new(),
+            modulation_frequency_hz: None,
+        }
+    }
+}
+
+impl CalibrateSettings {
+    /// A time is excluded when it equals one of the list to 0.01 %, more than f32 rounding and less than any
+    /// camera's step.
+    pub(super) fn excludes(&self, integration_time_us: f64) -> bool {
+        let same = |excluded: &f64| (integration_time_us / excluded - 1.0).abs() < 1e-4;
+        self.exclude_time_us.iter().any(same)
+    }
+
+    /// The reference time, µs; the paper's where the user gives none.
+    pub(super) fn reference_time_us(&self) -> f64 {
+        self.reference.integration_time_us.unwrap_or(REFERENCE_TIME_US)
+    }
+}

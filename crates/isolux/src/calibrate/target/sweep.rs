@@ -1,0 +1,139 @@
+//! Measuring a recording of labelled targets, frame by frame.
+
+use super::measure::{WindowMedians, measure, middle_cosine};
+use super::patches::{PATCH_PX, Patches};
+use crate::calibrate::sweep_frames::SweepFrames;
+use crate::calibrate::{CalibrateSettings, MeasureError};
+use crate::frame::Intrinsics;
+use crate::frame::{Frame, IntegrationTime};
+use crate::frame::{Plane, Shape, Window};
+use crate::surface::Incidence;
+use crate::terms::Source;
+
+/// A labelled target, measured frame by frame.
+#[derive(Clone, Debug)]
+pub struct TargetSweep {
+    frames: SweepFrames,
+    frames_used: usize,
+    intrinsics: Option<Intrinsics>,
+    shape: Option<Shape>,
+    patches: Patches,
+    incidence: Incidence,
+    windows: Vec<WindowMedians>,
+    without_normal: usize,
+    linear: bool,
+}
+
+/// What a recording of targets says.
+#[derive(Clone, Debug)]
+pub struct TargetWindows {
+    /// The recording.
+    pub(super) source: Source,
+    pub(super) intrinsics: Option<Intrinsics>,
+    /// `None` without a frame.
+    pub(super) shape: Option<Shape>,
+    pub(super) windows: Vec<WindowMedians>,
+    pub(super) without_normal: usize,
+    /// Made linear before they were measured.
+    pub(super) linear: bool,
+}
+
+impl TargetWindows {
+    /// Number of windows that were measured.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.windows.len()
+    }
+
+    /// True when no window could be measured.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.windows.is_empty()
+    }
+}
+
+impl TargetSweep {
+    /// Starts a recording; `recording` is the name that errors and the calibration give it. Without `intrinsics`, there
+    /// are no angles.
+    #[must_use]
+    pub fn new(
+        recording: impl Into<String>,
+        settings: &CalibrateSettings,
+        intrinsics: Option<Intrinsics>,
+    ) -> Self {
+        Self {
+            frames: SweepFrames::new(recording, settings),
+            frames_used: 0,
+            intrinsics: intrinsics.filter(Intrinsics::is_usable),
+            shape: None,
+            patches: Patches::default(),
+            incidence: Incidence::default(),
+            windows: Vec::new(),
+            without_normal: 0,
+            linear: false,
+        }
+    }
+
+    /// Says that the frames are linear in the light, as [`FrameLineariser`](crate::standardize::FrameLineariser) makes
+    /// them: their amplitudes grow with the integration time itself, not with the table.
+    #[must_use]
+    pub fn of_linear_frames(self) -> Self {
+        Self { linear: true, ..self }
+    }
+
+    /// Measures the next frame. Its integration time may be unknown or a map, its distance missing.
+    ///
+    /// # Errors
+    /// [`MeasureError`] when the frame has no labels, planes that do not fit, or another shape than the first.
+    pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
+        let number = self.frames.next(frame)?;
+        let target = frame.target.as_ref().ok_or(MeasureError::NoTarget { frame: number })?;
+        let shape = *self.shape.get_or_insert(frame.shape());
+        target
+            .expect_shape("target", shape)
+            .map_err(|source| MeasureError::Shape { frame: number, source })?;
+        if let IntegrationTime::PerFrame(time_us) = frame.integration_time_us
+            && self.frames.settings.excludes(time_us)
+        {
+            return Ok(());
+        }
+        if let (Some(distance_m), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+            self.incidence.take(frame, distance_m, intrinsics);
+        }
+        let before = self.windows.len();
+        for &(row, column) in self.patches.find(target) {
+            let Some(mut window) = measure(frame, target, (row, column)) else { continue };
+            window.frame = u32::try_from(number).unwrap_or(u32::MAX);
+            if let (Some(_), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+                let cosine = |index| self.incidence.cosine(index, intrinsics);
+                window.cosine = middle_cosine(cosine, shape, (row, column));
+                self.without_normal += usize::from(window.cosine.is_nan());
+            }
+            self.windows.push(window);
+        }
+        self.frames_used += usize::from(self.windows.len() > before);
+        Ok(())
+    }
+
+    /// Ends the recording.
+    #[must_use]
+    pub fn finish(self) -> TargetWindows {
+        TargetWindows {
+            source: self.frames.source(self.frames_used),
+            intrinsics: self.intrinsics,
+            shape: self.shape,
+            windows: self.windows,
+            without_normal: self.without_normal,
+            linear: self.linear,
+        }
+    }
+}
+
+/// The windows of 5×5 pixels that are measured in an image of labels: each lies inside one label above 0, and none
+/// overlaps another.
+#[must_use]
+pub fn label_windows(target: &Plane<u8>) -> Vec<Window> {
+    let mut patches = Patches::default();
+    let window = |&(top, left): &(usize, usize)| Window { top, left, height: PATCH_PX, width: PATCH_PX };
+    patches.find(target).iter().map(window).collect()
+}
