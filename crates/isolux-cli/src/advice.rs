@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 
-use isolux::standardize::{DistanceStep, TimeStep};
 use isolux::{Advice, RecordingKind};
 
 /// A finding, with what can be done about it.
@@ -13,37 +12,45 @@ pub(crate) fn with(finding: impl Display, advice: Option<Advice>) -> String {
     }
 }
 
-/// The words of an advice; empty where this program has no option for it.
-pub(crate) fn words(advice: &Advice) -> String {
-    match advice {
-        Advice::CalibrateFrom(kind) => format!("calibrate with {} REC", recording_option(*kind)),
-        Advice::UseTimeStep(step) => format!("use --time {}", time_name(*step)),
-        Advice::UseDistanceStep(step) => format!("use --distance {}", distance_name(*step)),
-        Advice::GiveNoise => "give the noise with --read-noise-dn and --shot-noise-dn2-per-dn".to_owned(),
-        Advice::GiveOrEstimateNoise => {
-            "give the noise (--read-noise-dn, --shot-noise-dn2-per-dn), a calibration that \
-                                        holds it, or --sigma on to estimate it from the recording"
-                .to_owned()
+/// The words of an advice; empty where this program has none for it.
+fn words(advice: &Advice) -> String {
+    let fixed = match advice {
+        Advice::UseTimeStep(step) => return format!("use --time {step}"),
+        Advice::UseDistanceStep(step) => return format!("use --distance {step}"),
+        Advice::CalibrateFrom(kind) => {
+            return format!("fit it with `isolux calibrate {} REC`", recording_option(*kind));
         }
-        Advice::GiveBracketLength => "say how many frames a bracket has, --merge-bracket=N".to_owned(),
-        Advice::NameCamera => "say which with --camera NAME".to_owned(),
-        Advice::LeaveInputOut => "leave out --keep-input".to_owned(),
-        Advice::RecordCalibratedTimes => {
-            "record within it, calibrate further, or use --time linear".to_owned()
+        Advice::ExcludeTime { integration_time_us } => {
+            return format!("leave it out with --exclude-time-us {integration_time_us}");
         }
-        Advice::GiveIntrinsics => "add \"intrinsics\" to recording.json".to_owned(),
-        Advice::GiveModulationFrequency => "give it with --modulation-frequency-hz".to_owned(),
-        Advice::SkipFrames => "drop the first ones with --skip-frames".to_owned(),
-        Advice::ExcludeTime { integration_time_us } => format!("use --exclude-time-us {integration_time_us}"),
         Advice::ReferenceTime { integration_time_us } => {
-            format!("use --reference-time-us {}", number(*integration_time_us))
+            return format!("use --reference-time-us {}", number(*integration_time_us));
         }
         Advice::ReferenceDistance { distance_m } => {
-            format!("use --reference-distance-m {}", number(*distance_m))
+            return format!("use --reference-distance-m {}", number(*distance_m));
         }
-        Advice::Window => "use another --window".to_owned(),
-        _ => String::new(),
-    }
+        Advice::Calibrate => "`isolux calibrate` measures them",
+        Advice::GiveNoise => {
+            "give it with --read-noise-dn and --shot-noise-dn2-per-dn, or fit it with \
+             `isolux calibrate --exposure-sweep REC`, several frames at each time"
+        }
+        Advice::GiveOrEstimateNoise => {
+            "give the noise (--read-noise-dn, --shot-noise-dn2-per-dn), a calibration that holds it, or --sigma on to \
+             estimate it from the recording"
+        }
+        Advice::GiveBracketLength => "say how many frames a bracket has, --merge-bracket=N",
+        Advice::NameCamera => "say which with --camera NAME",
+        Advice::LeaveInputOut => "leave out --keep-input",
+        Advice::RecordCalibratedTimes => "record within it, calibrate further, or use --time linear",
+        Advice::GiveIntrinsics => {
+            "write {\"intrinsics\": {\"fx\": .., \"fy\": .., \"cx\": .., \"cy\": ..}} (pixels) into its recording.json"
+        }
+        Advice::GiveModulationFrequency => "give it with --modulation-frequency-hz",
+        Advice::SkipFrames => "drop the first ones with --skip-frames",
+        Advice::Window => "use another --window",
+        _ => "",
+    };
+    fixed.to_owned()
 }
 
 fn number(value: Option<f64>) -> String {
@@ -59,24 +66,15 @@ fn recording_option(kind: RecordingKind) -> &'static str {
     }
 }
 
-fn time_name(step: TimeStep) -> String {
-    format!("{step:?}").to_lowercase()
-}
-
-fn distance_name(step: DistanceStep) -> String {
-    format!("{step:?}").to_lowercase()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isolux::standardize::TimeStep;
 
     #[test]
     fn an_advice_follows_what_was_found() {
-        assert_eq!(
-            with("too dark", Some(Advice::UseTimeStep(TimeStep::Linear))),
-            "too dark: use --time linear"
-        );
+        let advised = with("too dark", Some(Advice::UseTimeStep(TimeStep::Linear)));
+        assert_eq!(advised, "too dark: use --time linear");
         assert_eq!(with("too dark", None), "too dark");
     }
 }

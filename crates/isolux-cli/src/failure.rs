@@ -68,7 +68,11 @@ impl From<PipelineError> for Failure {
 fn exit_code(error: &PipelineError) -> u8 {
     match error {
         PipelineError::Interrupted => Failure::INTERRUPTED,
-        PipelineError::Plan(PlanError::TermMissing { .. } | PlanError::ChannelMissing { .. })
+        PipelineError::Plan(
+            PlanError::TermMissing { .. }
+            | PlanError::CalibrationMissing { .. }
+            | PlanError::ChannelMissing { .. },
+        )
         | PipelineError::BracketTime { .. }
         | PipelineError::NoBrackets { .. }
         | PipelineError::Merge { .. }

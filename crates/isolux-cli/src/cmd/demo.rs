@@ -161,7 +161,7 @@ impl Demo {
         let settings = CalibrateSettings::default();
         let fitted = isolux_pipeline::calibrate(&settings, None, sweeps.open()?, &self.observer);
         let (calibration, report) =
-            fitted.inspect_err(|error| error.warnings().iter().for_each(terminal::warn))?;
+            fitted.inspect_err(|error| error.warnings().iter().for_each(calibrate::warn))?;
         isolux_io::write_calibration(&calibration, &self.folder.join("CAMERA.json"))?;
         terminal::print("Calibration, from a wall over integration times and a board over distances\n")?;
         terminal::print(calibrate::describe(&calibration, &report))?;

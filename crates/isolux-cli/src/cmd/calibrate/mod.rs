@@ -6,10 +6,11 @@ mod scenes;
 mod targets;
 
 use isolux::Reference;
-use isolux::calibrate::CalibrateSettings;
+use isolux::calibrate::{CalibrateSettings, FitWarning};
 use isolux::calibration::Terms;
 use isolux_pipeline::CalibrationPaths;
 
+use crate::advice;
 use crate::failure::{Failure, Outcome};
 use crate::options::CalibrateArgs;
 use crate::output;
@@ -44,9 +45,8 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     let observer = Terminal::default();
     let fitted = isolux_pipeline::calibrate(&settings, args.camera.clone(), inputs.open()?, &observer);
     // Of a failed fit, what was left out before it failed.
-    let (calibration, report) =
-        fitted.inspect_err(|error| error.warnings().iter().for_each(terminal::warn))?;
-    report.warnings.iter().for_each(terminal::warn);
+    let (calibration, report) = fitted.inspect_err(|error| error.warnings().iter().for_each(warn))?;
+    report.warnings.iter().for_each(warn);
     if calibration.terms == Terms::default() {
         return Err(Failure::data(
             "no term could be fitted from these recordings, for the reasons above: no calibration is written",
@@ -58,4 +58,9 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     }
     terminal::print(describe(&calibration, &report))?;
     terminal::print(format!("written: {}", args.output.display()))
+}
+
+/// Prints what the user should know of a fit, with what can be done about it.
+pub(crate) fn warn(warning: &FitWarning) {
+    terminal::warn(advice::with(warning, warning.advice()));
 }
