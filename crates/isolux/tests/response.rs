@@ -9,7 +9,7 @@ use common::standardize::{standardize, try_standardize};
 use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
 use isolux::standardize::{DistanceStep, SpecularStep, StandardizeError, TimeStep};
 use isolux::terms::response::{Response, ResponseTier};
-use isolux::{Calibration, Channels, Choice, Frame, PixelFlags, Shape, Standardizer};
+use isolux::{Advice, Calibration, Channels, Choice, Frame, PixelFlags, RecordingKind, Shape, Standardizer};
 use isolux_camera::{CameraModel, Scene, Simulation};
 
 /// A small image of the built-in wall in this light, over 24 times evenly spread in ln t.
@@ -172,8 +172,9 @@ fn best_takes_the_best_tier_that_recording_and_calibration_allow_and_never_the_m
     let error = plan(&tier(ResponseTier::Intensity), &without, channels()).unwrap_err().to_string();
     assert!(error.contains("the calibration does not hold it"), "{error}");
     without.terms.response = None;
-    let error = plan(&named, &without, channels()).unwrap_err().to_string();
-    assert!(error.contains("`response` was asked for") && error.contains("--exposure-sweep"), "{error}");
+    let error = plan(&named, &without, channels()).unwrap_err();
+    assert!(error.to_string().contains("`response` was asked for"), "{error}");
+    assert_eq!(error.advice(), Some(Advice::CalibrateFrom(RecordingKind::ExposureSweep)));
 }
 
 #[test]
