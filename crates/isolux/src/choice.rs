@@ -128,7 +128,7 @@ impl FromStr for DenoiseStep {
     fn from_str(text: &str) -> Result<Self, UnknownName> {
         match text {
             NONE => Ok(Self::None),
-            text => text.parse().map(Self::Smooth),
+            text => text.parse().map(Self::Smooth).map_err(|error: UnknownName| error.or(NONE)),
         }
     }
 }
@@ -148,7 +148,10 @@ impl FromStr for SpecularStep {
     fn from_str(text: &str) -> Result<Self, RuleError> {
         match text {
             NONE => Ok(Self::None),
-            text => text.parse().map(Self::Limit),
+            text => text.parse().map(Self::Limit).map_err(|error| match error {
+                RuleError::Rule(error) => error.or(NONE).into(),
+                error => error,
+            }),
         }
     }
 }
@@ -234,6 +237,9 @@ mod tests {
     fn steps_that_do_nothing_have_a_name_too() {
         assert_eq!("none".parse(), Ok(DenoiseStep::None));
         assert_eq!("none".parse(), Ok(SpecularStep::None));
-        assert!("nothing".parse::<DenoiseStep>().unwrap_err().to_string().contains("median"));
+        let error = "nothing".parse::<DenoiseStep>().unwrap_err().to_string();
+        assert_eq!(error, "denoising rule `nothing` found, median, wiener, plane, temporal or none expected");
+        let error = "clip".parse::<SpecularStep>().unwrap_err().to_string();
+        assert!(error.ends_with("percent, knee or none expected"), "{error}");
     }
 }

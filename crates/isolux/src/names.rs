@@ -3,20 +3,26 @@
 
 /// A text that names none of the things it could name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} `{found}` found, {expected} expected")]
+#[error("{what} `{found}` found, {} expected", one_of(expected))]
 pub struct UnknownName {
     /// What is named: `time step`, `response tier`.
     pub what: &'static str,
     /// The text.
     pub found: String,
     /// The names there are.
-    pub expected: String,
+    pub expected: Vec<&'static str>,
 }
 
 impl UnknownName {
     /// None of `names`, where one of them was expected.
-    pub(crate) fn new(what: &'static str, found: &str, names: &[&str]) -> Self {
-        Self { what, found: found.to_owned(), expected: one_of(names) }
+    pub(crate) fn new(what: &'static str, found: &str, names: &[&'static str]) -> Self {
+        Self { what, found: found.to_owned(), expected: names.to_vec() }
+    }
+
+    /// Where another name would have done as well.
+    pub(crate) fn or(mut self, name: &'static str) -> Self {
+        self.expected.push(name);
+        self
     }
 }
 
