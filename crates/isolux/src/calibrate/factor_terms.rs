@@ -91,7 +91,8 @@ impl fmt::Display for FactorWarning {
             }
             Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
                 f,
-                "no spline, surfaces were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance of                  {reference_m} m: record there, or choose another"
+                "no spline, surfaces were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance of \
+                 {reference_m} m: record there, or choose another"
             ),
         }
     }
