@@ -1,5 +1,7 @@
 //! Whoever looks on: is told every frame, is told what was noticed, and may stop the work, which then leaves nothing.
 
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
 use std::cell::RefCell;
 use std::path::Path;
 

@@ -112,7 +112,7 @@ pub fn measure(camera: &HeldOut, case: &BracketCase) -> Result<BracketFigures, E
         for (pixel, squares) in squares.iter_mut().enumerate() {
             squares.merged += error(&merged, &merged_clean, pixel).powi(2);
             squares.brackets += 1;
-            let [longest, all] = [&noisy, &merged].map(|frame| is_usable(frame, pixel));
+            let [longest, all] = [noisy, &merged].map(|frame| is_usable(frame, pixel));
             unusable += u64::from(!longest);
             filled += u64::from(!longest && all);
             usable += u64::from(all);

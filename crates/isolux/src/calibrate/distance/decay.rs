@@ -117,6 +117,6 @@ impl Position {
         // Half the tolerance that defines a position: no position can range over more than twice of it.
         let moved = range_m > (STANDARD_ERRORS * noise_m).max(0.5 * POSITION_TOLERANCE_M);
         let (recording, frame) = (recording.to_owned(), self.first_frame);
-        moved.then(|| DistanceWarning::TargetMoved { recording, frame, range_m })
+        moved.then_some(DistanceWarning::TargetMoved { recording, frame, range_m })
     }
 }
