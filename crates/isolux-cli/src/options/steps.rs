@@ -90,13 +90,13 @@ impl StepArgs {
 }
 
 /// Takes the core's names, with the core's descriptions in the help.
-pub(super) fn named<T: Copy + FromStr>(
+pub(super) fn named<T>(
     all: &[T],
     name: fn(T) -> &'static str,
     description: fn(T) -> &'static str,
 ) -> impl TypedValueParser<Value = T>
 where
-    T: Clone + Send + Sync + 'static,
+    T: Copy + FromStr + Send + Sync + 'static,
     T::Err: std::error::Error + Send + Sync + 'static,
 {
     let value = |one: &T| PossibleValue::new(name(*one)).help(plain(description(*one)));
