@@ -24,10 +24,10 @@ fn words(advice: &Advice) -> String {
             return format!("leave it out with --exclude-time-us {integration_time_us}");
         }
         Advice::ReferenceTime { integration_time_us } => {
-            return format!("use --reference-time-us {}", number(*integration_time_us));
+            return setting("--reference-time-us", *integration_time_us);
         }
         Advice::ReferenceDistance { distance_m } => {
-            return format!("use --reference-distance-m {}", number(*distance_m));
+            return setting("--reference-distance-m", *distance_m);
         }
         Advice::Calibrate => "`isolux calibrate` measures them",
         Advice::GiveNoise => {
@@ -53,8 +53,8 @@ fn words(advice: &Advice) -> String {
     fixed.to_owned()
 }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "X".to_owned(), |value| value.to_string())
+fn setting(option: &str, value: Option<f64>) -> String {
+    value.map_or_else(|| format!("{option} sets it"), |value| format!("use {option} {value}"))
 }
 
 fn recording_option(kind: RecordingKind) -> &'static str {
