@@ -8,7 +8,7 @@ mod simulated;
 
 use std::error::Error;
 
-use isolux::{Channels, Choice, Frame, RecordingTraits, Standardizer};
+use isolux::{Channels, Choice, Frame, Plane, RecordingTraits, Standardizer};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // A desk, at 16.2 ms: twice the reference time.
@@ -46,7 +46,8 @@ fn show(title: &str, standardizer: &Standardizer, frame: &Frame) -> Result<(), B
     let out = stream.push(frame)?;
     println!("  {} of {} pixels have a value", out.summary.valid, out.summary.pixels);
     let (row, column) = (20, 120);
-    let [before, after] = [&frame.amplitude, &out.amplitude].map(|image| image.get(row, column));
-    println!("  pixel ({row}, {column}): {before:?} DN before, {after:?} DN after");
+    let value = |image: &Plane<f32>| image.get(row, column).unwrap_or(f32::NAN);
+    let (before, after) = (value(&frame.amplitude), value(&out.amplitude));
+    println!("  pixel ({row}, {column}): {before:.1} DN before, {after:.1} DN after");
     Ok(())
 }
