@@ -130,8 +130,3 @@ pub use recording::{
     for_each_frame, open,
 };
 pub use whole_file::write_whole;
-
-/// The library example of the README, compiled as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;

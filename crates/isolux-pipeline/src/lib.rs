@@ -76,3 +76,8 @@ pub use plan::{plan, plan_with};
 pub use remark::{Remark, Severity};
 pub use source::{FrameSource, FramesInMemory, SourceFacts};
 pub use standardize::{NativeSink, StandardizeOptions, Summary, standardize};
+
+/// The library example of the README, compiled as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -16,7 +16,7 @@ named! {
     /// Which terms to use where no single step says otherwise.
     #[derive(Default)]
     pub enum Method: "method" {
-        /// The paper's chain, lut, cubic and histogram: the calibration must hold them.
+        /// The steps of the paper: lut, cubic and histogram. The calibration must hold them.
         Paper = "paper",
         /// The best terms that the calibration holds; without a calibration, textbook physics.
         #[default]
@@ -30,11 +30,11 @@ named! {
     pub enum TimeStep: "time step" {
         /// The calibration's lookup table.
         Lut = "lut",
-        /// The calibration's response to the fill of each pixel, then `t_ref / t`.
+        /// Saturation corrected by the fill of each pixel (the calibration's response), then `t_ref / t`.
         Response = "response",
         /// `t_ref / t`.
         Linear = "linear",
-        /// Leave the integration time in.
+        /// No correction of the integration time.
         None = "none",
     }
 }
@@ -45,13 +45,13 @@ named! {
     pub enum DistanceStep: "distance step" {
         /// The calibration's polynomial.
         Cubic = "cubic",
-        /// The calibration's smooth law.
+        /// The calibration's smooth law (spline).
         Spline = "spline",
         /// `(d / d_ref)²`.
         Square = "square",
         /// Eq. 5 of the paper: `((2d)² + 1) / ((2 d_ref)² + 1)`, d in metres.
         Eq5 = "eq5",
-        /// Leave the distance in.
+        /// No correction of the distance.
         None = "none",
     }
 }
@@ -61,7 +61,7 @@ named! {
     pub enum ProfileStep: "profile step" {
         /// Divide by the calibration's illumination profile.
         On = "on",
-        /// Leave the illumination profile in.
+        /// No correction of the illumination profile.
         Off = "off",
     }
 }
@@ -69,9 +69,9 @@ named! {
 named! {
     /// The step that takes the angle of incidence out.
     pub enum AngleStep: "angle step" {
-        /// Divide by the cosine to the calibration's exponent; Lambert's, 1, where it holds none.
+        /// Divide by the cosine of the angle to the power that the calibration holds; without one, 1 (Lambert).
         On = "on",
-        /// Leave the angle of incidence in.
+        /// No correction of the angle of incidence.
         Off = "off",
     }
 }

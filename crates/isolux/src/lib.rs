@@ -6,8 +6,12 @@
 //! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`]. [`denoise`] smooths the distance
 //! before it scales.
 //!
-//! [`calibrate`] fits a [`Calibration`] from sweeps; a [`Standardizer`] is planned once, and its
-//! [`Stream`] takes each [`Frame`]; [`evaluate`] tells how much better it is. This crate knows no files and starts no threads.
+//! [`calibrate`] fits a [`Calibration`] to recordings of your camera. A [`Standardizer`] is planned once, and its
+//! [`Stream`] takes frame after frame, each a [`Frame`]. [`evaluate`] measures how much better the result is. This crate
+//! knows no files and starts no threads.
+//!
+//! The folder `examples` of this crate has four short programs to read in their order, with frames of a simulated
+//! camera: `01_standardize`, `02_calibrate`, `03_evaluate` and `04_live`.
 //!
 //! ```
 //! use isolux::{Channels, Choice, Frame, IntegrationTime, Plane, Shape, Standardizer};

@@ -9,20 +9,25 @@ use super::values::positive;
 
 /// Fit a camera's calibration from sweeps, targets and scenes
 ///
-/// Every given recording determines a term: an exposure sweep the lookup table over integration time (`lut`), the
-/// compression of each pixel (`response`: the more channels, the better) and the noise of the amplitude (`noise`), a
-/// distance sweep the polynomial (`cubic`) and the smooth law (`spline`) over distance, a target the smooth law, the
-/// illumination profile (`profile`) and the angle of incidence (`angle`) together, a scene `lut`, `spline`,
-/// `profile` and `angle` as far as it goes, without knowing any surface. What no recording determines is left out,
-/// and why is said; what a sweep or a target determines is not taken from a scene.
+/// Give one recording or several. Each kind of recording determines its own terms, that is, corrections.
 ///
-/// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step into
-/// over-saturation; several frames each. Distance sweep: a flat target facing the camera, at eight or more
-/// distances and a few integration times; the reference distance among them. Target: any recording with the `target`
-/// channel (equal labels above 0 are one material); best a matt board, carried through the whole image from near to
-/// far and tilted by up to 60°. Scene: any recording of things that stand still. With the camera still and several
-/// integration times it gives the table and the response; with the camera moving, nearer and farther and turning,
-/// everything else. The motion is that of `world_from_camera`, or is estimated from the distances.
+/// Exposure sweep: a still scene, best a bright wall, while the integration time grows step by step until the image is
+/// over-saturated; several frames at each time. It determines the table over the integration time (`lut`), the
+/// saturation of the pixels (`response`; the more channels, the better) and the noise of the amplitude (`noise`).
+///
+/// Distance sweep: a flat board that faces the camera, at eight or more distances and a few integration times, the
+/// reference distance among them. It determines the polynomial (`cubic`) and the smooth law (`spline`) over distance.
+///
+/// Target: any recording with the channel `target` (equal labels above 0 are one material). Best is a matt board,
+/// carried through the whole image from near to far and tilted by up to 60°. It determines `spline`, the illumination
+/// profile (`profile`) and the angle of incidence (`angle`) together.
+///
+/// Scene: any recording of things that stand still; their surfaces need not be known. A still camera at several
+/// integration times determines `lut` and `response`. A camera that moves nearer and farther and turns determines
+/// everything else. The motion is that of `world_from_camera`, or it is estimated from the distances.
+///
+/// A term that no recording determines is left out, and the reason is said. What a sweep or a target determines is
+/// not taken from a scene.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux calibrate --exposure-sweep wall --distance-sweep board -o CAMERA.json\n  \
@@ -31,31 +36,32 @@ use super::values::positive;
     isolux calibrate --exposure-sweep wall --target tilted-board -o CAMERA.json\n  \
     isolux calibrate --scene walk-through-the-lab -o CAMERA.json")]
 pub(crate) struct CalibrateArgs {
-    /// A still scene, integration time varied; may be given several times
+    /// Exposure sweep: a still scene at many integration times; may be given several times
     #[arg(long, value_name = "REC")]
     pub(crate) exposure_sweep: Vec<PathBuf>,
-    /// A flat target at several distances; may be given several times
+    /// Distance sweep: a flat board at several distances; may be given several times
     #[arg(long, value_name = "REC")]
     pub(crate) distance_sweep: Vec<PathBuf>,
-    /// A recording with labelled materials in any pose; may be given several times
+    /// Target: labelled materials in any pose; may be given several times
     #[arg(long, value_name = "REC")]
     pub(crate) target: Vec<PathBuf>,
-    /// An ordinary recording of unknown things, the camera in the hand or still; may be given several times
+    /// Scene: an ordinary recording of things that stand still, the camera moving or not; may be given several times
     #[arg(long, value_name = "REC")]
     pub(crate) scene: Vec<PathBuf>,
     /// The calibration file to write
     #[arg(short, long, value_name = "CAMERA.json")]
     pub(crate) output: PathBuf,
-    /// Integration time at which amplitudes stay as they are, µs
+    /// Reference integration time: there, amplitudes keep their value, µs
     #[arg(long, default_value_t = REFERENCE_TIME_US, value_parser = positive)]
     pub(crate) reference_time_us: f64,
-    /// Distance at which amplitudes stay as they are, m
+    /// Reference distance: there, amplitudes keep their value, m
     #[arg(long, default_value_t = REFERENCE_DISTANCE_M, value_parser = positive)]
     pub(crate) reference_distance_m: f64,
-    /// Side of the central measurement window of distance sweeps, pixels; less than 6 do not tell the noise
+    /// Side of the square in the image's centre that distance sweeps are measured in, pixels; at least 6, to measure
+    /// the noise
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(6..))]
     pub(crate) window: u16,
-    /// Frames to drop after each change of the integration time
+    /// Frames to drop after each change of the integration time, while the camera settles
     #[arg(long, default_value_t = 0)]
     pub(crate) skip_frames: usize,
     /// An integration time to leave out, µs; may be given several times

@@ -8,12 +8,12 @@ use super::calibrate::CalibrateArgs;
 use super::steps::StepArgs;
 use super::values::not_negative;
 
-/// Makes the amplitude images of time-of-flight cameras comparable: one material has one value, whatever the
+/// isolux makes the amplitude images of time-of-flight cameras comparable: one material has one value, whatever the
 /// integration time and the distance, without specular outliers.
 ///
 /// A recording (REC) is a folder of .npy files with recording.json, or the same in one .npz with a .json beside
-/// it. `isolux info REC` says what a recording holds and what can be done with it; `isolux demo` shows
-/// everything without any input.
+/// it. `isolux info REC` says what a recording holds and what can be done with it. `isolux demo` shows
+/// everything and needs no input.
 #[derive(Debug, Parser)]
 #[command(name = "isolux", version, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -35,13 +35,13 @@ pub(crate) enum Command {
     Completions(CompletionsArgs),
 }
 
-/// Simulate a camera, calibrate it, standardize its recordings, and show what that is good for
+/// Simulate a camera, calibrate it, standardize its recordings, and show the result
 ///
-/// Needs no input. Writes recordings, a calibration and before/after images into DIR.
+/// The demo needs no input. It writes recordings, a calibration, images before and after, and a page into DIR.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux demo\n  isolux demo /tmp/demo --seed 2")]
 pub(crate) struct DemoArgs {
-    /// Folder to create; an earlier demo in it is replaced
+    /// Folder to create; a demo that is already in it is replaced
     #[arg(default_value = "isolux-demo")]
     pub(crate) dir: PathBuf,
     /// Seed of the simulated noise
@@ -65,7 +65,7 @@ pub(crate) struct InfoArgs {
 ///
 /// The output is a recording with `standardized_amplitude` (f32, NaN where invalid), `flags` (u16; their
 /// meaning is in its recording.json) and, where the noise is known, `sigma`, the predicted standard deviation.
-/// Without -c, textbook physics is used (t_ref/t, d²), as far as the channels are there.
+/// Without -c, textbook physics is used (t_ref/t, d²), as far as the recording has the channels.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux standardize desk -o desk-standardized\n  \
@@ -87,15 +87,16 @@ pub(crate) struct StandardizeArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) steps: StepArgs,
-    /// Merge brackets: frames of a still scene at several integration times into one, weighted by the predicted sigma,
-    /// saturated pixels left out. A bracket ends where an integration time recurs, or after N frames
+    /// Merge frames of a still scene at several integration times (a bracket) into one. The frames are weighted by the
+    /// predicted sigma; saturated pixels are left out. A bracket ends where an integration time recurs, or after N
+    /// frames
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, conflicts_with = "keep_input",
           value_parser = clap::value_parser!(u16).range(2..))]
     pub(crate) merge_bracket: Option<Option<u16>>,
-    /// Copy the input's channels into the output
+    /// Copy the channels of the input into the output
     #[arg(long)]
     pub(crate) keep_input: bool,
-    /// Replace OUT if it is there
+    /// Replace OUT if it exists
     #[arg(long)]
     pub(crate) force: bool,
     /// Threads to use [default: all cores]; the output does not depend on it
@@ -106,11 +107,12 @@ pub(crate) struct StandardizeArgs {
     pub(crate) json: bool,
 }
 
-/// Print before/after figures of a recording
+/// Measure how much better a recording is after standardizing
 ///
-/// For a still scene at several integration times: how much each pixel and the image still vary, whether one
-/// threshold keeps finding the same pixels, how far the histograms lie apart. For any scene: how the amplitude
-/// goes with distance, and the noise. The valid fraction stands beside each figure.
+/// For a still scene at several integration times, the figures say how much each pixel and the image vary, whether
+/// one threshold finds the same pixels at all times, and how far apart the histograms are. For any scene, they say
+/// how the amplitude depends on the distance, and how large the noise is. Beside each figure stands the share of
+/// valid pixels.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  isolux evaluate desk -c CAMERA.json\n  isolux evaluate desk -c CAMERA.json --trusted --report desk.html\n  isolux evaluate desk --json"
@@ -127,10 +129,10 @@ pub(crate) struct EvaluateArgs {
     /// Leave out pixels flagged LOW_SIGNAL or SATURATED, before and after
     #[arg(long)]
     pub(crate) trusted: bool,
-    /// Leave out the textbook's and the paper's chain beside the chosen one: faster
+    /// Do not compare with textbook physics and the steps of the paper: faster
     #[arg(long)]
     pub(crate) alone: bool,
-    /// Also write a page with the figures, curves and pictures
+    /// Also write an HTML page with figures, curves and pictures
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
     /// Print JSON
@@ -138,14 +140,17 @@ pub(crate) struct EvaluateArgs {
     pub(crate) json: bool,
 }
 
-/// Say whether a stream is raw, already corrected, gamma'd or clipped
+/// Say whether the amplitude of a recording is raw, or already corrected, gamma-encoded or clipped
 ///
-/// Regresses the logarithm of the amplitude on those of integration time and distance and on r² (r: distance from
-/// the principal point in units of the half diagonal), each where the recording determines it: times from a still
-/// scene, distances from one labelled target (`target` channel) or one vendor reflectivity. With
-/// `vendor_amplitude`, the same for the vendor's scaling; with `phase_samples`, for the amplitude against eq. 1.
-/// Says what the recording cannot tell, and what to record instead. All intervals are 95 %, from errors clustered
-/// by image block and by frame; a residual is the scatter of the logarithm around the fit, 10 % = 0.1.
+/// The logarithm of the amplitude is fitted by a sum of three effects: the logarithm of the integration time, the
+/// logarithm of the distance, and r² (r: distance from the principal point in units of the half diagonal). Each
+/// effect needs its recording: a still scene for the time; one labelled target (channel `target`) or one vendor
+/// reflectivity for the distance. If the recording has `vendor_amplitude`, the scaling of the vendor is fitted in the
+/// same way. If it has `phase_samples`, the amplitude is compared with eq. 1 of the paper.
+///
+/// The command says what the recording does not determine, and what to record instead. All intervals are 95 %, from
+/// errors clustered by image block and by frame. A residual is the scatter of the logarithm around the fit: 10 % is
+/// 0.1.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux diagnose desk\n  \
@@ -163,7 +168,7 @@ pub(crate) struct DiagnoseArgs {
 /// Record a scene with the simulated camera
 ///
 /// SCENE is the name of a built-in scene or a TOML file of your own. `isolux simulate --list` names the scenes and
-/// cameras, `--print NAME` prints a built-in scene as a pattern for your own.
+/// cameras. `--print NAME` prints a built-in scene, to copy and change.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     isolux simulate --list\n  \
@@ -181,22 +186,22 @@ pub(crate) struct SimulateArgs {
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Ambient light on a white surface, relative to the camera's own at 1 m [default: the scene's]
+    /// Ambient light on a white surface, relative to the camera's own light at 1 m [default: the scene's]
     #[arg(long, value_name = "F", value_parser = not_negative)]
     pub(crate) ambient: Option<f64>,
     /// Name of a built-in camera, or a TOML file [default: the scene's]
     #[arg(long, value_name = "CAMERA")]
     pub(crate) camera: Option<String>,
-    /// Write the four raw bins too
+    /// Write the four raw phase samples too
     #[arg(long)]
     pub(crate) phase_samples: bool,
-    /// Write the truth too: `true_distance_m` and `reflectivity`
+    /// Write the true values too: `true_distance_m` and `reflectivity`
     #[arg(long)]
     pub(crate) truth: bool,
-    /// Replace the output if it is there
+    /// Replace the output if it exists
     #[arg(long)]
     pub(crate) force: bool,
-    /// Name the built-in scenes and cameras
+    /// List the built-in scenes and cameras
     #[arg(long)]
     pub(crate) list: bool,
     /// Print a built-in scene or camera
@@ -206,8 +211,8 @@ pub(crate) struct SimulateArgs {
 
 /// Repeat every experiment of the paper on the simulated SR-3100
 ///
-/// Writes one page with each figure, what the paper states about it, what is measured here and whether it holds, and
-/// the numbers of every figure as CSV beside it.
+/// The command writes one page. It shows each figure, what the paper states about it, what is measured here and whether
+/// it holds. The numbers of every figure lie beside the page as CSV.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux paper\n  isolux paper -o /tmp/paper --seed 2")]
 pub(crate) struct PaperArgs {
@@ -219,10 +224,10 @@ pub(crate) struct PaperArgs {
     pub(crate) seed: u64,
 }
 
-/// Measure what isolux reaches on cameras and frames that nothing was fitted on, beside the paper and the textbook
+/// Measure isolux, the paper and textbook physics on cameras and frames that nothing was fitted on
 ///
-/// Prints a table in Markdown. The simulated cameras need no input; recordings of real cameras are measured where they
-/// are given.
+/// The command prints a table in Markdown. The simulated cameras need no input. Recordings of real cameras are measured
+/// too if they are given.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  isolux figures\n  isolux figures --json")]
 pub(crate) struct FiguresArgs {

@@ -12,26 +12,26 @@ use crate::failure::Failure;
 /// Prediction of the standard deviation.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SigmaArgs {
-    /// Predict the standard deviation of each value, and take off the bias that the noise of the distance brings
-    /// [default: on where the noise is given or in the calibration]
+    /// Predict the standard deviation of each value, and subtract the bias that the noise of the distance causes
+    /// [default: on where options or the calibration give the noise]
     #[arg(long, value_enum)]
     pub(crate) sigma: Option<SigmaArg>,
-    /// Noise of an amplitude without light, standard deviation, DN
+    /// Noise of the amplitude without any light, as a standard deviation, DN
     #[arg(long, value_name = "DN", value_parser = not_negative)]
     pub(crate) read_noise_dn: Option<f64>,
-    /// Shot noise: variance that each DN of amplitude adds, DN²
+    /// Shot noise: the variance that each DN of amplitude adds, DN²
     #[arg(long, value_name = "X", value_parser = not_negative)]
     pub(crate) shot_noise_dn2_per_dn: Option<f64>,
-    /// Modulation frequency, Hz, for the noise of the distance [default: that of the recording]
+    /// Modulation frequency, Hz; the noise of the distance is computed from it [default: that of the recording]
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub(crate) modulation_frequency_hz: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SigmaArg {
-    /// Where neither options nor the calibration tell the noise, estimate it from the recording
+    /// Predict it; if neither options nor the calibration give the noise, estimate it from the recording
     On,
-    /// Predict nothing, take nothing off
+    /// Predict nothing, subtract nothing
     Off,
 }
 

@@ -17,39 +17,41 @@ use crate::failure::Failure;
 /// Which steps to apply.
 #[derive(Debug, Default, Args)]
 pub(crate) struct StepArgs {
-    /// Terms to use where no single step is given
+    /// Steps to apply where no option below names one
     #[arg(long, default_value_t, value_parser = named(Method::ALL, Method::name, Method::description))]
     pub(crate) method: Method,
-    /// Step for the integration time [default: by method]
+    /// How to correct the integration time [default: by method]
     #[arg(long, value_parser = named(TimeStep::ALL, TimeStep::name, TimeStep::description))]
     pub(crate) time: Option<TimeStep>,
-    /// How the response tells the fill of each pixel, for --time response [default: the best that calibration and
-    /// recording allow]
+    /// For --time response: what to compute the fill of each pixel from, that is, how near it is to saturation
+    /// [default: the best that calibration and recording allow]
     #[arg(long, value_name = "TIER")]
     #[arg(value_parser = named(ResponseTier::ALL, ResponseTier::name, ResponseTier::description))]
     pub(crate) response_tier: Option<ResponseTier>,
-    /// Step for the distance [default: by method]
+    /// How to correct the distance [default: by method]
     #[arg(long, value_parser = named(DistanceStep::ALL, DistanceStep::name, DistanceStep::description))]
     pub(crate) distance: Option<DistanceStep>,
-    /// Denoise the distance before it scales, where a distance step is applied [default: none]
+    /// Smooth the distance before the amplitude is corrected with it [default: none]
     #[arg(long, value_parser = denoise_steps())]
     pub(crate) denoise: Option<DenoiseStep>,
-    /// Divide by the illumination profile that the calibration holds [default: on with --method best]
+    /// Correct the uneven illumination of the image [default: on with --method best]
     #[arg(long, value_parser = named(ProfileStep::ALL, ProfileStep::name, ProfileStep::description))]
     pub(crate) profile: Option<ProfileStep>,
-    /// Divide by the cosine of the angle of incidence; needs intrinsics [default: off]
+    /// Correct the angle at which the light meets each surface; needs intrinsics [default: off]
     #[arg(long, value_parser = named(AngleStep::ALL, AngleStep::name, AngleStep::description))]
     pub(crate) angle: Option<AngleStep>,
-    /// Step for highlights: none, or a rule, with its parameter where it is not to be the usual one
-    /// [default: histogram]
+    /// How to limit highlights: a rule, or a rule with its parameter [default: histogram]
     ///
-    /// - histogram: Limit at the highest value with enough pixels; histogram:occurrences=N [usual: max(2, 0.0005 of the
-    ///   valid pixels)]
-    /// - sigma:     Limit at the mean and K standard deviations; sigma:deviations=K [usual: 4]
-    /// - percent:   Limit at a fraction of the maximum, or a quantile; percent:fraction=F [usual: 0.9] or
-    ///   percent:quantile=Q
-    /// - knee:      Compress what lies above the histogram's limit, keeping the order; knee:occurrences=N
-    /// - none:      Leave them
+    /// Possible rules, with their parameter and its usual value:
+    /// - histogram: Limit at the highest value that occurs in enough pixels;
+    ///              histogram:occurrences=N [usual: max(2, 0.0005 of the valid pixels)]
+    /// - sigma:     Limit at K standard deviations above the mean;
+    ///              sigma:deviations=K [usual: 4]
+    /// - percent:   Limit at a fraction of the maximum, or at a quantile of the image;
+    ///              percent:fraction=F [usual: 0.9] or percent:quantile=Q
+    /// - knee:      Compress what lies above the limit of histogram, keeping its order;
+    ///              knee:occurrences=N [usual: as for histogram]
+    /// - none:      Limit nothing
     #[arg(long, value_name = "RULE", verbatim_doc_comment)]
     pub(crate) specular: Option<SpecularStep>,
     /// Flag amplitudes below this as LOW_SIGNAL, DN [default: from the calibration]
@@ -105,7 +107,7 @@ where
 
 /// The same for a step that is a rule or nothing.
 fn denoise_steps() -> impl TypedValueParser<Value = DenoiseStep> {
-    let none = PossibleValue::new("none").help("Scale by the distance as it was delivered");
+    let none = PossibleValue::new("none").help("Use the distance as it was delivered");
     let rule = |rule: &DenoiseRule| PossibleValue::new(rule.name()).help(plain(rule.description()));
     let values: Vec<PossibleValue> = [none].into_iter().chain(DenoiseRule::ALL.iter().map(rule)).collect();
     PossibleValuesParser::new(values).try_map(|text| text.parse::<DenoiseStep>())

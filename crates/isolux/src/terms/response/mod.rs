@@ -13,8 +13,9 @@
 //! | [`IntensityResponse`] | DC image | compression by any light |
 //! | [`PhaseSampleResponse`] | the four raw bins | the same, without approximation, and that of the distance |
 //!
-//! The gauge: a linearised amplitude is that of a pixel without a full well. Times `t_ref / t` it is what such a
-//! pixel would deliver at the reference time; the multiplier of a pixel that is compressed there is not 1.
+//! A linearised amplitude is corrected for saturation: it is what a pixel would deliver that never saturates. Times
+//! `t_ref / t` it is what such a pixel would deliver at the reference time. So the multiplier of a pixel that saturates
+//! at the reference time is not 1.
 
 mod amplitude;
 mod fill_time;
@@ -108,15 +109,15 @@ named! {
     /// How a recording tells the fill of its pixels.
     #[non_exhaustive]
     pub enum ResponseTier: "response tier" {
-        /// By the integration time alone, as the table does.
+        /// From the integration time alone, as the table does.
         Scalar = "scalar",
-        /// By the amplitude alone, for scenes without strong ambient light.
+        /// From the amplitude alone, for scenes without strong ambient light.
         Amplitude = "amplitude",
-        /// By the time, for the static scene of the sweep and no other; never chosen unless asked for.
+        /// From the time, for the static scene of the sweep and no other; never chosen unless asked for.
         Pixel = "pixel",
-        /// By intensity and amplitude.
+        /// From intensity and amplitude.
         Intensity = "intensity",
-        /// By the raw bins; repairs the distance too.
+        /// From the raw phase samples; repairs the distance too.
         PhaseSamples = "phase_samples",
     }
 }

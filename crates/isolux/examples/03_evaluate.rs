@@ -1,0 +1,52 @@
+//! Evaluate a standardization: how much does a still scene vary over integration times, before and after?
+#![allow(clippy::print_stdout, reason = "an example shows its result")]
+
+mod simulated;
+
+use std::error::Error;
+
+use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
+use isolux::{Channels, Choice, Standardizer};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // A still desk at 18 integration times, and the plan that standardizes it.
+    let frames = simulated::record("office-desk")?;
+    let calibration = simulated::calibration()?;
+    let channels =
+        Channels::AMPLITUDE | Channels::INTENSITY | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let standardizer = Standardizer::plan(&Choice::default(), Some(&calibration), channels)?;
+    let mut stream = standardizer.stream();
+
+    // One evaluator sees the raw amplitude, the other the standardized amplitude of the same frames.
+    let shape = frames[0].shape();
+    let mut before = Evaluator::new(shape, EvaluationSettings::default());
+    let mut after = Evaluator::new(shape, EvaluationSettings::default());
+
+    // Some figures compare every frame with one reference frame: the one whose time is nearest to the reference time.
+    let times_us = frames.iter().map(|frame| frame.integration_time_us.at(0));
+    let reference_us = calibration.reference.integration_time_us.unwrap_or(8200.0);
+    if let Some(index) = nearest_reference(times_us, reference_us) {
+        let (frame, out) = (&frames[index], stream.push(&frames[index])?);
+        before.set_reference(&raw_of(frame, out))?;
+        after.set_reference(&EvaluationFrame::of_standardized(frame, &out.amplitude, &out.flags))?;
+    }
+    for frame in &frames {
+        let out = stream.push(frame)?;
+        before.push(&raw_of(frame, out))?;
+        after.push(&EvaluationFrame::of_standardized(frame, &out.amplitude, &out.flags))?;
+    }
+
+    // A figure that these frames do not determine has no value; here, only those with a value are shown.
+    println!("{:<60} {:>8} {:>8}", "figure", "before", "after");
+    for row in Comparison::new(&before, &after).rows() {
+        if let (Ok(before), Ok(after)) = (row.before, row.after) {
+            println!("{:<60} {before:>8.3} {after:>8.3}  {}", row.metric, row.unit);
+        }
+    }
+    Ok(())
+}
+
+/// The raw amplitude with the flags of the standardized frame, so that both evaluators look at the same pixels.
+fn raw_of<'a>(frame: &'a isolux::Frame, out: &'a isolux::Standardized) -> EvaluationFrame<'a> {
+    EvaluationFrame::of_standardized(frame, &frame.amplitude, &out.flags)
+}
