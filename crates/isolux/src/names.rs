@@ -1,20 +1,21 @@
-//! Names of steps, rules and tiers. Each stands once, here in the code of what it names; the command line, files,
-//! Python and the documents take it from there.
+//! Names of steps, rules and tiers. Each name is defined once, in the code of what it names; the command line,
+//! files, Python and the documents take it from there. This module holds the error about an unknown name and what
+//! the types with names share.
 
-/// A text that names none of the things it could name.
+/// A text that is none of the expected names.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what} `{found}` found, {expected} expected")]
 pub struct UnknownName {
-    /// What is named: `time step`, `response tier`.
+    /// What should be named, such as `time step` or `response tier`.
     pub what: &'static str,
-    /// The text.
+    /// The text found.
     pub found: String,
-    /// The names there are.
+    /// The valid names, as `a, b or c`.
     pub expected: String,
 }
 
 impl UnknownName {
-    /// None of `names`, where one of them was expected.
+    /// The error that `found` is none of `names`.
     pub(crate) fn new(what: &'static str, found: &str, names: &[&str]) -> Self {
         Self { what, found: found.to_owned(), expected: one_of(names) }
     }
@@ -29,9 +30,8 @@ pub(crate) fn one_of(names: &[&str]) -> String {
     }
 }
 
-/// Declares an enum of plain variants, each with its name and a description (one line of
-/// documentation): `ALL`, `NAMES`,
-/// `name`, `description`, `FromStr`, `Display`, and serde by name.
+/// Declares an enum of plain variants, each with its name and a description (one line of documentation). It gets
+/// `ALL`, `NAMES`, `name`, `description`, `FromStr`, `Display`, and serde by name.
 macro_rules! named {
     (
         $(#[$outer:meta])*
@@ -46,7 +46,7 @@ macro_rules! named {
         }
 
         impl $type {
-            /// All there are.
+            /// All values.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
             /// Their names, in the same order.
             pub const NAMES: &'static [&'static str] = &[$($name),+];
