@@ -81,7 +81,8 @@ fn best_tier(planner: &Planner<'_>, response: &Response) -> Option<ResponseTier>
     response.tiers().find(|tier| planner.traits.channels.contains(tier.channels()))
 }
 
-/// True where the fill of each pixel is measured, which no table over time can know.
+/// True when the recording and the calibration allow a tier that measures the fill of each pixel, which no table
+/// over time does.
 pub(crate) fn measures_the_fill(planner: &Planner<'_>) -> bool {
     let response = planner.calibration.and_then(|c| c.terms.response.as_ref());
     let tier = response.and_then(|response| best_tier(planner, response));
