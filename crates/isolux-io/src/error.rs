@@ -116,7 +116,7 @@ pub enum RecordingError {
     },
     /// The number of frames is needed before the first one is read.
     #[error(
-        "`{}`: found a recording whose number of frames is known only at its end, expected one that tells it", path.display()
+        "`{}`: found a recording whose number of frames is known only at its end, expected one that states it", path.display()
     )]
     UnknownLength {
         /// The recording.

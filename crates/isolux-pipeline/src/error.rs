@@ -63,7 +63,7 @@ pub enum PipelineError {
     },
     /// Brackets should end where an integration time recurs, but a frame has no single integration time.
     #[error(
-        "`{recording}`, frame {frame}: found no single integration time, one expected to tell where a bracket ends"
+        "`{recording}`, frame {frame}: found no single integration time, one expected: a bracket ends where a time recurs"
     )]
     BracketTime {
         /// The recording.
@@ -72,7 +72,9 @@ pub enum PipelineError {
         frame: usize,
     },
     /// The integration times show no bracket of two frames or more.
-    #[error("`{recording}`: every integration time is followed by itself, another one expected in a bracket")]
+    #[error(
+        "`{recording}`: every frame has the integration time of the frame before it, different times expected in a bracket"
+    )]
     NoBrackets {
         /// The recording.
         recording: String,
@@ -94,7 +96,7 @@ pub enum PipelineError {
     },
     /// Input channels should be kept, but frames are merged.
     #[error(
-        "found channels to be kept of frames that are merged, one of the two expected: a merged frame has no input of its own"
+        "found input channels to keep and frames to merge, one of the two expected: a merged frame has no input of its own"
     )]
     KeptOfMerged,
     /// The output needs the number of frames beforehand, and the source does not know it.

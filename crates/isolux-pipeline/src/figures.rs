@@ -86,7 +86,10 @@ pub fn untold(rows: &[ComparisonRow]) -> String {
     }
     let mut text = String::new();
     for (reason, metrics) in missing {
-        text += &format!("\nnot told by this recording, since {reason}:\n  {}", metrics.join("\n  "));
+        text += &format!(
+            "\ncannot be determined from this recording, since {reason}:\n  {}",
+            metrics.join("\n  ")
+        );
     }
     text
 }

@@ -76,7 +76,7 @@ impl fmt::Display for Remark {
             ),
             Self::SceneMoved { share, integration_time_us } => write!(
                 f,
-                "the scene did not stand still ({:.0} % of it is elsewhere at {integration_time_us} µs): figures over \
+                "the scene did not stand still ({:.0} % of it has moved at {integration_time_us} µs): figures over \
                  integration times also show its movement",
                 100.0 * share
             ),

@@ -60,8 +60,8 @@ pub enum MeasureError {
     },
     /// A recording of a moving camera without intrinsics.
     #[error(
-        "no intrinsics {{fx, fy, cx, cy}} of the recording found, expected: a camera that moves sees its surfaces \
-         through them"
+        "no intrinsics {{fx, fy, cx, cy}} of the recording found, expected: the rays of a moving camera are \
+         computed from them"
     )]
     NoIntrinsics,
     /// A frame that the response cannot make linear.
