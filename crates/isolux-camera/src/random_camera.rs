@@ -1,4 +1,4 @@
-//! Cameras that nobody has seen before, for tests of calibrations on held-out devices.
+//! Random cameras, for tests of calibrations on devices that were not used in development.
 
 use isolux::Intrinsics;
 

@@ -37,7 +37,7 @@ impl Readout {
             let kept = self.well.kept_electrons(noise.poisson(mean));
             let read = kept + self.read_noise_electrons * noise.normal();
             let level = drift * self.gain_dn_per_electron * read + self.black_level_dn;
-            // The cast cuts off, so this rounds to nearest; 0 and the maximum are what the converter can say.
+            // The cast truncates, so that this rounds to nearest; the converter's range is 0 to its maximum.
             (level + 0.5).clamp(0.0, self.adc_maximum_dn) as u16
         })
     }

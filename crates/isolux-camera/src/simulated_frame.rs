@@ -34,8 +34,8 @@ pub struct Truth {
     pub specular_fraction: Plane<f32>,
     /// Amplitude without noise, saturation or quantization, DN; 0 where nothing is seen. Warm-up included.
     pub linear_amplitude: Plane<f32>,
-    /// Amplitude without noise and quantization, with saturation, DN. Warm-up included. Dead pixels are
-    /// treated as living.
+    /// Amplitude without noise and quantization, with saturation, DN. Warm-up included. Dead pixels get the value
+    /// of working ones.
     pub noise_free_amplitude: Plane<f32>,
 }
 

@@ -18,7 +18,7 @@ pub enum RecordingError {
         /// The operating system's reason.
         source: io::Error,
     },
-    /// The path leads to something else than a recording.
+    /// The path is not a recording.
     #[error(
         "`{}`: found {found}; expected a recording: a folder of .npy files, a folder with recording.npz, \
          or a .npz file", path.display()
@@ -51,7 +51,7 @@ pub enum RecordingError {
         /// What to do, or nothing.
         advice: String,
     },
-    /// Neither amplitude nor phase samples are there.
+    /// The recording has neither amplitude nor phase samples.
     #[error("`{}`: found no `amplitude` and no `phase_samples`, only {found}; one of the two is needed", path.display())]
     MissingAmplitude {
         /// The recording.
@@ -103,7 +103,7 @@ pub enum RecordingError {
         /// Number of frames.
         frame_count: usize,
     },
-    /// A frame was asked for that cannot be reached any more.
+    /// A frame was asked for that has been passed and cannot be read again.
     #[error(
         "`{}`: frame {index} was asked for after it had been passed; expected an order from front to back: this \
          recording can be read only once", path.display()
@@ -116,7 +116,7 @@ pub enum RecordingError {
     },
     /// The number of frames is needed before the first one is read.
     #[error(
-        "`{}`: found a recording whose number of frames is known only at its end, expected one that tells it", path.display()
+        "`{}`: found a recording whose number of frames is known only at its end, expected one that states it", path.display()
     )]
     UnknownLength {
         /// The recording.
@@ -146,7 +146,7 @@ pub enum RecordingError {
         /// What it holds.
         found: String,
     },
-    /// The writer was told to write something that makes no recording.
+    /// The channels or frames given to the writer do not make a recording.
     #[error("`{}`: {found} to be written, {expected} expected", path.display())]
     Write {
         /// The output, with the channel where it concerns one.

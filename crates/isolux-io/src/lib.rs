@@ -5,11 +5,11 @@
 //!
 //! # Reading
 //!
-//! [`open`] looks at what a path holds and gives back a [`Recording`], whatever the format. Its [`Metadata`] tell the
-//! shape, the channels, and, where the format knows it before the end, the number of frames. [`for_each_frame`] goes
-//! through a recording of any length; [`Recording::read_frame`] reads one frame by its number. Frames come in the
-//! units of [`isolux::Frame`], whatever is stored: distances in metres and radial, amplitudes from the phase samples
-//! where only those are recorded, and flags for what is no measurement.
+//! [`open`] recognizes the format of a path and returns a [`Recording`]. Its [`Metadata`] hold the shape, the
+//! channels and, where the format states it beforehand, the number of frames. [`for_each_frame`] goes through a
+//! recording of any length; [`Recording::read_frame`] reads one frame by its number. Frames come in the units of
+//! [`isolux::Frame`], whatever is stored: distances in metres and radial, amplitudes from the phase samples where
+//! only those are recorded, and pixels without a measurement are flagged.
 //!
 //! ```
 //! # let folder = tempfile::tempdir()?;

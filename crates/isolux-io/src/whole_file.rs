@@ -7,7 +7,7 @@ use std::path::Path;
 /// the permissions that the user's umask grants, not the narrow ones of temporary files.
 ///
 /// # Errors
-/// What the operating system says; nothing is left behind then.
+/// The error of the operating system; nothing is left behind then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();

@@ -1,4 +1,4 @@
-//! Which frames of a recording make one bracket, and merging them.
+//! Finds the brackets of a recording and merges their frames.
 
 use isolux::standardize::BracketMerge;
 use isolux::{Channels, IntegrationTime, PixelFlags, Shape, Standardized, Standardizer};
@@ -15,12 +15,13 @@ pub struct Brackets {
 }
 
 impl Brackets {
-    /// Brackets of `length` frames each, the last one perhaps of fewer; without a length, one ends where an
+    /// Brackets of `length` frames each, the last one perhaps of fewer. Without a length, a bracket ends where an
     /// integration time recurs.
     ///
     /// # Errors
-    /// [`PipelineError::BracketTime`] and [`PipelineError::NoBrackets`] where the times do not tell the ends,
-    /// [`PipelineError::LengthUnknown`] for a given length and an unknown number of frames, and those of reading.
+    /// [`PipelineError::BracketTime`] and [`PipelineError::NoBrackets`] where the times do not show where brackets
+    /// end, [`PipelineError::LengthUnknown`] for a given length and an unknown number of frames, and those of
+    /// reading.
     pub fn plan(
         source: &mut dyn FrameSource,
         length: Option<u16>,
@@ -87,7 +88,7 @@ pub(crate) struct Merging {
     merge: BracketMerge,
     lengths: std::vec::IntoIter<usize>,
     left: usize,
-    /// Pixels that every frame so far refuses for its time, at most.
+    /// Upper limit of the number of pixels that every frame so far has refused because of its time.
     refused: usize,
     out: Standardized,
 }
@@ -110,7 +111,7 @@ impl Merging {
         self.merge.bytes() + self.out.bytes()
     }
 
-    /// Takes the next frame; the merged one, when this was the last of its bracket.
+    /// Takes the next frame. Returns the merged frame when this was the last of its bracket.
     pub(crate) fn push(&mut self, frame: &Standardized) -> Result<Option<&Standardized>, FrameError> {
         self.refused = self.refused.min(frame.summary.time_refused);
         self.merge.push(frame)?;

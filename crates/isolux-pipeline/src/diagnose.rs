@@ -1,4 +1,4 @@
-//! Is a stream already corrected, and what does the vendor's scaling do?
+//! Diagnoses a recording: whether its amplitudes are already corrected, and what the vendor's scaling does.
 
 use isolux::Channels;
 use isolux::diagnose::{DiagnoseSettings, Diagnoser, Diagnosis};
@@ -24,7 +24,7 @@ pub fn diagnose(source: &mut dyn FrameSource, observer: &dyn Observer) -> Result
         | Channels::INTEGRATION_TIME
         | Channels::TARGET
         | Channels::VENDOR_AMPLITUDE;
-    // An amplitude that was computed from the bins has nothing to tell beside them.
+    // An amplitude that was computed from the bins adds nothing to them.
     wanted.set(Channels::PHASE_SAMPLES, !computed);
     let mut diagnoser = Diagnoser::new(facts.shape, settings);
     frames::for_each(source, wanted, Work::Diagnosing, observer, |index, frame| {

@@ -17,7 +17,7 @@ pub enum PipelineError {
     /// A recording cannot be read or written.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// Frames that come from elsewhere than a recording cannot be read or written.
+    /// A source or a sink that is not a recording failed.
     #[error("`{recording}`: {cause}")]
     Frames {
         /// Where they come from or go to.
@@ -43,7 +43,7 @@ pub enum PipelineError {
         #[source]
         cause: FrameError,
     },
-    /// A frame was asked for that a source does not have.
+    /// A source has no frame of this index, although an earlier pass had.
     #[error("`{recording}`: no frame {frame} found, which one pass over it had")]
     FrameMissing {
         /// The source.
@@ -51,7 +51,8 @@ pub enum PipelineError {
         /// Index of the frame, from 0.
         frame: usize,
     },
-    /// The standard deviation is asked for, and nothing tells the noise.
+    /// The standard deviation was asked for, but the noise of the amplitude is unknown and the recording does not
+    /// show it.
     #[error(
         "`{recording}`: no noise found in groups of 16 like pixels or more, consecutive frames of a still scene at one \
          integration time expected"
@@ -60,9 +61,9 @@ pub enum PipelineError {
         /// The recording.
         recording: String,
     },
-    /// The end of a bracket is to be told by the integration time, which a frame does not have.
+    /// Brackets should end where an integration time recurs, but a frame has no single integration time.
     #[error(
-        "`{recording}`, frame {frame}: found no single integration time, one expected to tell where a bracket ends"
+        "`{recording}`, frame {frame}: found no single integration time, one expected: a bracket ends where a time recurs"
     )]
     BracketTime {
         /// The recording.
@@ -70,8 +71,10 @@ pub enum PipelineError {
         /// Index of the frame, from 0.
         frame: usize,
     },
-    /// The integration times tell no bracket of two frames.
-    #[error("`{recording}`: every integration time is followed by itself, another one expected in a bracket")]
+    /// The integration times show no bracket of two frames or more.
+    #[error(
+        "`{recording}`: every frame has the integration time of the frame before it, different times expected in a bracket"
+    )]
     NoBrackets {
         /// The recording.
         recording: String,
@@ -91,12 +94,12 @@ pub enum PipelineError {
         /// The channel.
         channel: String,
     },
-    /// Channels are to be kept where frames are merged.
+    /// Input channels should be kept, but frames are merged.
     #[error(
-        "found channels to be kept of frames that are merged, one of the two expected: a merged frame has no input of its own"
+        "found input channels to keep and frames to merge, one of the two expected: a merged frame has no input of its own"
     )]
     KeptOfMerged,
-    /// A target of frames must know their number beforehand, and the source does not.
+    /// The output needs the number of frames beforehand, and the source does not know it.
     #[error("`{recording}`: the number of frames is not known beforehand, which the output needs")]
     LengthUnknown {
         /// The source.
@@ -111,7 +114,7 @@ pub enum PipelineError {
         /// The recording.
         recording: String,
     },
-    /// A recording cannot serve a calibration.
+    /// A recording cannot be measured for a calibration.
     #[error("`{recording}`: {cause}")]
     Measure {
         /// The recording.
@@ -120,16 +123,16 @@ pub enum PipelineError {
         #[source]
         cause: MeasureError,
     },
-    /// A calibration cannot be fitted from what was measured.
+    /// A calibration cannot be fitted to the measurements.
     #[error("{}", fit_text(distance_sweeps, cause))]
     Fit {
-        /// The distance sweeps, which are fitted together: a failing fit knows none of them.
+        /// Names of the distance sweeps, which are fitted together, so that the cause does not name a single one.
         distance_sweeps: Vec<String>,
         /// Why.
         #[source]
         cause: CalibrateError,
     },
-    /// The operating system gives no threads.
+    /// The operating system refused to start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
@@ -167,7 +170,7 @@ impl PipelineError {
         }
     }
 
-    /// What was left out before a fit failed, and why: often the reason.
+    /// What was left out before a fit failed, and why; this is often the reason.
     #[must_use]
     pub fn warnings(&self) -> &[FitWarning] {
         match self {
@@ -176,7 +179,7 @@ impl PipelineError {
         }
     }
 
-    /// Puts a recording and a frame to what went wrong there.
+    /// Adds the recording and the frame to a cause.
     pub(crate) fn frame(recording: &str, frame: usize) -> impl Fn(FrameError) -> Self {
         move |cause| Self::Frame { recording: recording.to_owned(), frame, cause }
     }

@@ -11,7 +11,7 @@ const MISSING: &str = "-";
 /// One figure of all chains on the same frames.
 #[derive(Clone, Debug)]
 pub struct ChainRow {
-    /// True where the recording tells the figure.
+    /// True when the recording determines the figure.
     pub is_told: bool,
     /// Its name, where it should go, its value of the raw amplitude and of every chain, each with the share of the
     /// values behind it in brackets.
@@ -71,7 +71,7 @@ pub fn direction(better: Better) -> &'static str {
     }
 }
 
-/// The figures that the recording does not tell, by reason; empty where it tells all.
+/// The figures that the recording does not determine, grouped by reason; empty when it determines all.
 #[must_use]
 pub fn untold(rows: &[ComparisonRow]) -> String {
     let mut missing: Vec<(Unavailable, Vec<&str>)> = Vec::new();
@@ -86,7 +86,10 @@ pub fn untold(rows: &[ComparisonRow]) -> String {
     }
     let mut text = String::new();
     for (reason, metrics) in missing {
-        text += &format!("\nnot told by this recording, since {reason}:\n  {}", metrics.join("\n  "));
+        text += &format!(
+            "\ncannot be determined from this recording, since {reason}:\n  {}",
+            metrics.join("\n  ")
+        );
     }
     text
 }

@@ -10,7 +10,7 @@ use crate::source::FrameSource;
 /// Reads every frame into the same memory and hands it over with its index, until the frames end.
 ///
 /// # Errors
-/// What the source and `visit` bring; [`PipelineError::Interrupted`] once the observer has cancelled.
+/// Those of the source and of `visit`; [`PipelineError::Interrupted`] once the observer has cancelled.
 pub fn for_each(
     source: &mut dyn FrameSource,
     wanted: Channels,
@@ -33,8 +33,8 @@ pub fn for_each(
     Ok(())
 }
 
-/// Reads frame `index` out of its turn. `stream` is made to remember those before it that its result depends on, and the
-/// frame can be pushed next.
+/// Reads frame `index` out of order. The earlier frames that its result depends on are pushed into `stream` first,
+/// so that the frame itself can be pushed next.
 pub(crate) fn read_alone(
     source: &mut dyn FrameSource,
     index: usize,

@@ -1,20 +1,20 @@
-//! Recordings in, results out: what lies between files and the core of isolux.
+//! Recordings in, results out: the library between files and the core of isolux.
 //!
-//! | room | what goes in | what comes out |
+//! | module | what goes in | what comes out |
 //! |---|---|---|
 //! | [`mod@plan`] | a choice of steps, a recording | a planned chain |
-//! | [`mod@standardize`] | a recording, a chain | standardized frames, in their order, in a [`standardize::FrameSink`] |
-//! | [`brackets`] | a recording | which of its frames are merged into one |
+//! | [`mod@standardize`] | a recording, a chain | standardized frames, in order, in a [`standardize::FrameSink`] |
+//! | [`brackets`] | a recording | the groups of frames that are merged into one |
 //! | [`mod@calibrate`] | sweeps, targets, scenes | a calibration |
 //! | [`mod@assess`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain |
 //! | [`mod@diagnose`] | a recording | whether it is raw, corrected, clipped |
-//! | [`mod@overview`] | a recording | what it holds |
+//! | [`mod@overview`] | a recording | its channels, times and ranges of values |
 //! | [`figures`], [`page`] | an assessment | its figures in words, and a page about it |
 //! | [`simulate`] | a simulated scene | a recording |
 //!
-//! Recordings are [`FrameSource`]s, as are frames in memory and those of the simulated camera. Whoever looks on hands in
-//! an [`Observer`]: it is told the progress and what was noticed, and may cancel. Nothing here prints, parses a
-//! command line or ends the process.
+//! A recording is a [`FrameSource`], as are frames in memory and those of the simulated camera. The caller passes
+//! an [`Observer`], which receives progress and remarks and may cancel. This crate does not print, parse a command
+//! line or end the process.
 //!
 //! ```
 //! use isolux::Choice;

@@ -1,11 +1,11 @@
-//! Whoever looks on while a recording is worked on: is told how far it is and what was noticed, and may stop it.
+//! Progress, remarks and cancellation: how a caller follows the work on a recording.
 
 use std::fmt;
 
 use crate::error::PipelineError;
 use crate::remark::Remark;
 
-/// The work that progress is told of.
+/// The kinds of work whose progress is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Work {
@@ -51,29 +51,30 @@ impl fmt::Display for Work {
     }
 }
 
-/// What the pipeline tells while it works, and asks. Every method does nothing unless it is implemented.
+/// Receives progress and remarks while the pipeline works, and may cancel it. The default of every method does
+/// nothing.
 ///
 /// The methods are called on the thread that called the pipeline.
 pub trait Observer {
-    /// `done` frames of `total` are done; the total is `None` where the source does not know its length. Each pass
-    /// begins with 0 frames done and, unless it fails, ends with all of `Some(total)`.
+    /// Receives the progress: `done` frames of `total` are done. The total is `None` where the source does not know
+    /// its length. Each pass begins with 0 frames done and, unless it fails, ends with all frames of `Some(total)`.
     fn progress(&self, work: Work, done: usize, total: Option<usize>) {
         let _ = (work, done, total);
     }
 
-    /// True once the work is to be given up. It is asked between frames; the work then ends with
+    /// Returns true to cancel the work. It is called between frames; the work then ends with
     /// [`PipelineError::Interrupted`], and no output is left behind.
     fn cancelled(&self) -> bool {
         false
     }
 
-    /// Something that the user should know, and that stands in no result.
+    /// Receives something that the user should know and that is in no result.
     fn remark(&self, remark: Remark) {
         let _ = remark;
     }
 }
 
-/// Looks away, and never stops anything.
+/// Ignores everything and never cancels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 

@@ -1,4 +1,4 @@
-//! What a recording holds, from a look at a few of its frames.
+//! Summarizes a recording from a few of its frames.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ const SAMPLED_FRAMES: usize = 16;
 /// Values that the quantiles rest on; more would take memory without making them better.
 const SAMPLED_VALUES: usize = 1 << 20;
 
-/// What a recording holds. Shares and quantiles come from a few of its frames.
+/// Summary of a recording. Shares (0..=1) and quantiles come from a few of its frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Overview {
     /// The figures below come from this many frames.
@@ -52,7 +52,7 @@ pub struct Spread {
     pub maximum: f64,
 }
 
-/// Looks at a few frames, from the first to the last, and at all integration times.
+/// Reads a few frames, from the first to the last, and all integration times.
 ///
 /// # Errors
 /// Those of reading, and [`PipelineError::Interrupted`] once the observer has cancelled.

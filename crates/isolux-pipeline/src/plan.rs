@@ -11,8 +11,8 @@ use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
-/// Plans the chain for a recording. Where the standard deviation is required and nothing tells the noise, the recording
-/// is read once to estimate it. The observer is told the notes of the plan.
+/// Plans the chain for a recording. Where the standard deviation is required and the noise is unknown, the
+/// recording is read once to estimate it. The observer receives the notes of the plan as remarks.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
@@ -25,7 +25,7 @@ pub fn plan(
     plan_with(choice, calibration, source.facts().traits(), source, observer)
 }
 
-/// The same for a recording of which the user knows better than it tells itself: `traits` are believed.
+/// The same with `traits` in place of the recording's own, where the user knows better.
 ///
 /// # Errors
 /// Those of [`plan`].
@@ -46,10 +46,10 @@ pub fn plan_with(
     Ok(standardizer)
 }
 
-/// The noise of the amplitude that a recording itself shows.
+/// Estimates the noise of the amplitude from a recording.
 ///
 /// # Errors
-/// [`PipelineError::NoNoise`] where it shows none, and those of reading.
+/// [`PipelineError::NoNoise`] where it cannot be estimated, and those of reading.
 pub fn estimate_noise(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,

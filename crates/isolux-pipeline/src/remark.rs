@@ -1,4 +1,4 @@
-//! What the pipeline notices on its way, as data.
+//! Remarks of the pipeline for the user, as data.
 
 use std::fmt;
 
@@ -14,12 +14,12 @@ pub enum Severity {
     Warning,
 }
 
-/// Something that the user should know, and that stands in no result. [`Display`](fmt::Display) says what was found;
-/// [`Remark::advice`] says what can be done about it.
+/// Something that the user should know and that is in no result. [`Display`](fmt::Display) says what was found;
+/// [`Remark::advice`] says what the user can do about it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// Of the plan of a chain.
+    /// A note of the plan of a chain.
     Plan(Note),
     /// The noise of the amplitude had to be taken from neighbouring pixels.
     NoiseFromNeighbours {
@@ -28,9 +28,9 @@ pub enum Remark {
     },
     /// The scene of an evaluation did not stand still.
     SceneMoved {
-        /// Share of the scene that is elsewhere, 0 to 1.
+        /// Share of the scene that moved, 0 to 1.
         share: f64,
-        /// Integration time at which it is, µs.
+        /// Integration time at which it had moved, µs.
         integration_time_us: f64,
     },
     /// The recordings of one calibration name different cameras; the first is taken.
@@ -76,7 +76,7 @@ impl fmt::Display for Remark {
             ),
             Self::SceneMoved { share, integration_time_us } => write!(
                 f,
-                "the scene did not stand still ({:.0} % of it is elsewhere at {integration_time_us} µs): figures over \
+                "the scene did not stand still ({:.0} % of it has moved at {integration_time_us} µs): figures over \
                  integration times also show its movement",
                 100.0 * share
             ),

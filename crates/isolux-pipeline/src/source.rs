@@ -8,10 +8,10 @@ use isolux_io::{Recording, RecordingInfo};
 
 use crate::error::PipelineError;
 
-/// What is known of frames before the first is read.
+/// What is known about the frames before the first is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFacts {
-    /// As messages and the provenance of results name it: the path of a recording.
+    /// Name in messages and in the provenance of results: the path of a recording.
     pub name: String,
     /// Height and width of every frame.
     pub shape: Shape,
@@ -26,7 +26,7 @@ pub struct SourceFacts {
 }
 
 impl SourceFacts {
-    /// Of frames of which nothing else is known.
+    /// Facts about frames of which only these are known.
     #[must_use]
     pub fn new(name: impl Into<String>, shape: Shape, available: Channels) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl SourceFacts {
         self.info.intrinsics.as_ref().map(|intrinsics| intrinsics.pinhole)
     }
 
-    /// What a plan must know of the frames.
+    /// What a plan must know about the frames.
     #[must_use]
     pub fn traits(&self) -> RecordingTraits {
         RecordingTraits {
@@ -62,10 +62,10 @@ pub trait FrameSource {
     /// What is known of the frames.
     fn facts(&self) -> SourceFacts;
 
-    /// Reads frame `index`, counted from 0, into `frame`, whose memory is reused; `false` when the frames end before it.
-    /// Ascending reads are fast; whether others are possible is the source's to say.
+    /// Reads frame `index`, counted from 0, into `frame`, whose memory is reused; `false` when the frames end
+    /// before it. Ascending reads are fast; whether other orders are possible depends on the source.
     ///
-    /// The `wanted` channels are filled, as far as they are there; others may be.
+    /// Those of the `wanted` channels that the source has are filled; others may be.
     ///
     /// # Errors
     /// [`PipelineError`] when the frame cannot be read. `frame` is then partly filled.

@@ -13,7 +13,7 @@ pub(crate) fn table(colours: Colours) -> [Rgb; 256] {
     }
 }
 
-/// Colour of pixels without a value: none that the table holds, and told from it by lightness or by hue.
+/// Colour of pixels without a value: not in the table, and different from all of its colours in lightness or hue.
 pub(crate) fn missing(colours: Colours) -> Rgb {
     match colours {
         Colours::Grey => [0xc2, 0x2f, 0x5a],

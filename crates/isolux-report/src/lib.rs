@@ -1,8 +1,8 @@
 //! Turns results into self-contained HTML pages.
 //!
-//! A [`page::Page`] says what a report holds, without any looks. [`render`] makes one HTML document of it: styles,
-//! script, charts (SVG) and pictures (PNG) are inside, so that it can be sent as it is and asks no network.
-//! [`write_report`] lays the numbers of each chart and table beside it as CSV, and the pictures as PNG.
+//! A [`page::Page`] holds the contents of a report without their appearance. [`render`] makes one HTML document of
+//! it: styles, script, charts (SVG) and pictures (PNG) are inside, so that it can be sent as it is and needs no
+//! network. [`write_report`] lays the numbers of each chart and table beside it as CSV, and the pictures as PNG.
 //! [`png::encode`] and [`png::montage`] make pictures alone.
 
 mod chart;

@@ -1,4 +1,4 @@
-//! What a report is made of: results without any looks. Rendering is elsewhere.
+//! The contents of a report, without their appearance, which is up to the renderer.
 
 use isolux::Plane;
 

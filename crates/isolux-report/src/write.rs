@@ -107,7 +107,7 @@ fn place(draft: &Path, folder: &Path, files: &[File]) -> Result<(), ReportError>
             .and_then(|()| fs::rename(draft.join(name), &path));
         if let Err(source) = placed {
             for path in new {
-                // The first error is the one to tell.
+                // The first error is the one to report.
                 let _ = fs::remove_file(path);
             }
             // Folders that others use are not empty and stay.

@@ -1,18 +1,18 @@
-//! What a user can do about an error or a warning, as data. Whoever shows it words it: the command line as options,
-//! Python as arguments.
+//! What a user can do about an error or a warning, as data. Each interface puts it into its own words: the command
+//! line names options, Python names arguments.
 
 use crate::choice::{DistanceStep, TimeStep};
 
 /// The kinds of recordings that a calibration is fitted from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingKind {
-    /// A still scene while the integration time is varied.
+    /// A still scene at several integration times.
     ExposureSweep,
     /// A flat target at several distances.
     DistanceSweep,
     /// Labelled materials in any pose.
     Target,
-    /// Ordinary recordings without a rig.
+    /// Ordinary recordings, without a rig or labels.
     Scene,
 }
 
@@ -28,21 +28,21 @@ pub enum Advice {
     UseTimeStep(TimeStep),
     /// Take this step for the distance instead.
     UseDistanceStep(DistanceStep),
-    /// Tell the noise of the amplitude.
+    /// State the noise of the amplitude.
     GiveNoise,
-    /// Tell the noise of the amplitude, or let it be estimated from the recording.
+    /// State the noise of the amplitude, or let it be estimated from the recording.
     GiveOrEstimateNoise,
-    /// Tell the number of frames of a bracket.
+    /// State the number of frames of a bracket.
     GiveBracketLength,
     /// Name the camera.
     NameCamera,
     /// Do not keep the channels of the input.
     LeaveInputOut,
-    /// Record within the calibrated range of integration times, calibrate further, or take the time out by physics.
+    /// Record within the calibrated range of integration times, calibrate a wider range, or scale by `t_ref / t`.
     RecordCalibratedTimes,
-    /// Tell the intrinsics of the recording.
+    /// State the intrinsics of the recording.
     GiveIntrinsics,
-    /// Tell the modulation frequency.
+    /// State the modulation frequency.
     GiveModulationFrequency,
     /// Leave out the first frames after each change of the integration time.
     SkipFrames,

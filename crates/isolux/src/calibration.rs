@@ -1,4 +1,5 @@
-//! The calibration of one camera: fitted terms, the conditions they refer to, and where they come from.
+//! The calibration of one camera: fitted terms, the conditions they refer to, and the recordings they were fitted
+//! on. [`Calibration`] has the structure of the calibration file (JSON).
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +15,7 @@ pub const REFERENCE_DISTANCE_M: f64 = 0.75;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
-    /// Integration time, µs; absent for a camera that does not tell it.
+    /// Integration time, µs; absent where the recordings do not state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_time_us: Option<f64>,
     /// Radial distance, m.
@@ -27,7 +28,7 @@ impl Default for Reference {
     }
 }
 
-/// The amplitude noise that is there without light, measured at the shortest integration time.
+/// The noise that the amplitude has without light, measured at the shortest integration time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NoiseFloor {
@@ -44,7 +45,7 @@ impl NoiseFloor {
     /// high by `1 / (2 SNR²)`, 2 % at 5.
     pub const LOW_SIGNAL_SNR: f64 = 5.0;
 
-    /// The floor for a measured standard deviation (DN) at an integration time (µs).
+    /// The noise floor for a standard deviation (DN) that was measured at an integration time (µs).
     #[must_use]
     pub fn new(amplitude_sd_dn: f64, integration_time_us: f64) -> Self {
         Self {
@@ -97,12 +98,12 @@ pub struct Calibration {
     pub created_by: String,
     /// Conditions under which every multiplier is 1.
     pub reference: Reference,
-    /// What was fitted.
+    /// The fitted terms; each may be absent.
     pub terms: Terms,
-    /// Noise of the amplitude without light, where an exposure sweep showed it.
+    /// Noise of the amplitude without light; present when an exposure sweep had repeated frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_floor: Option<NoiseFloor>,
-    /// What concerns more than one term.
+    /// Warnings that concern more than one term.
     pub warnings: Vec<String>,
 }
 
@@ -112,7 +113,7 @@ impl Calibration {
     /// Newest format version that this library reads, and the one it writes.
     pub const VERSION: u32 = 1;
 
-    /// A calibration without terms.
+    /// A calibration without terms. `camera` is the name of the camera.
     #[must_use]
     pub fn new(camera: Option<String>, reference: Reference) -> Self {
         Self {
@@ -127,8 +128,8 @@ impl Calibration {
         }
     }
 
-    /// Refuses impossible values (formats, signs, ranges, lengths), so that whatever follows may rely on them. That
-    /// table and cubic are 1 at the reference is their fit's promise and is not checked again.
+    /// Refuses impossible values (formats, signs, ranges, lengths), so that later code may rely on them. It does
+    /// not check that table and cubic are 1 at the reference: their fits ensure that.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
@@ -167,7 +168,7 @@ impl NoiseFloor {
 }
 
 impl Terms {
-    /// Each term for itself.
+    /// Checks each term by itself.
     fn check(&self) -> Result<(), ParameterError> {
         let Self { lut, response, cubic, spline, profile, angle, noise } = self;
         optional_term(lut)?;
@@ -179,7 +180,7 @@ impl Terms {
         optional_term(noise)
     }
 
-    /// What the terms refer to must be the calibration's reference.
+    /// Checks that the terms refer to the calibration's reference.
     fn check_against(&self, reference: &Reference) -> Result<(), ParameterError> {
         let needs_time = self.lut.is_some() || self.response.is_some();
         let fine = !needs_time || reference.integration_time_us.is_some();

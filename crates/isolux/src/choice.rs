@@ -25,7 +25,7 @@ named! {
 }
 
 named! {
-    /// The step that takes the integration time out.
+    /// The step that removes the effect of the integration time.
     #[non_exhaustive]
     pub enum TimeStep: "time step" {
         /// The calibration's lookup table.
@@ -40,7 +40,7 @@ named! {
 }
 
 named! {
-    /// The step that takes the distance out.
+    /// The step that removes the effect of the distance.
     #[non_exhaustive]
     pub enum DistanceStep: "distance step" {
         /// The calibration's polynomial.
@@ -57,7 +57,7 @@ named! {
 }
 
 named! {
-    /// The step that takes the illumination profile out.
+    /// The step that removes the effect of the illumination profile.
     pub enum ProfileStep: "profile step" {
         /// Divide by the calibration's illumination profile.
         On = "on",
@@ -67,7 +67,7 @@ named! {
 }
 
 named! {
-    /// The step that takes the angle of incidence out.
+    /// The step that removes the effect of the angle of incidence.
     pub enum AngleStep: "angle step" {
         /// Divide by the cosine of the angle to the power that the calibration holds; without one, 1 (Lambert).
         On = "on",
@@ -77,8 +77,8 @@ named! {
 }
 
 named! {
-    /// Whether the standard deviation of each value is predicted. Where it is, the bias that the noise of the distance
-    /// brings is taken off the values.
+    /// Whether the standard deviation of each value is predicted. Where it is, the bias that the noise of the
+    /// distance causes is subtracted from the values.
     #[derive(Default)]
     pub enum SigmaStep: "sigma step" {
         /// Predict it; an error when the noise is not known.
@@ -95,7 +95,7 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DenoiseStep {
-    /// By this rule.
+    /// Smooth the distance by this rule.
     Smooth(DenoiseRule),
     /// Scale by the distance as it was delivered.
     None,
@@ -106,7 +106,7 @@ pub enum DenoiseStep {
 pub enum SpecularStep {
     /// Limit by this rule.
     Limit(SpecularRule),
-    /// Leave them.
+    /// Leave highlights as they are.
     None,
 }
 
@@ -159,29 +159,30 @@ impl FromStr for SpecularStep {
 by_name!(DenoiseStep);
 by_name!(SpecularStep);
 
-/// A method, and the steps that override it.
+/// A method, and the steps that override it. A step that is `None` follows the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Choice {
-    /// Where no single step is given.
+    /// What decides the steps that are not given.
     pub method: Method,
-    /// Integration time.
+    /// How the integration time is removed.
     pub time: Option<TimeStep>,
-    /// Tier of the response; otherwise the best that calibration and recording allow.
+    /// Tier of the response: by what it finds the fill of a pixel. `None` takes the best that calibration and
+    /// recording allow.
     pub response_tier: Option<ResponseTier>,
-    /// Noise of the distance; otherwise it is left in.
+    /// How the distance is denoised. `None` does not denoise it.
     pub denoise: Option<DenoiseStep>,
-    /// Distance.
+    /// How the distance is removed.
     pub distance: Option<DistanceStep>,
-    /// Illumination profile.
+    /// Whether the illumination profile is removed.
     pub profile: Option<ProfileStep>,
-    /// Angle of incidence; otherwise it is left in.
+    /// Whether the angle of incidence is removed. `None` leaves it in.
     pub angle: Option<AngleStep>,
-    /// Highlights.
+    /// How highlights are limited.
     pub specular: Option<SpecularStep>,
     /// Amplitudes below this are flagged LOW_SIGNAL, DN; otherwise the calibration's noise floor decides.
     pub low_signal_below_dn: Option<f32>,
-    /// Prediction of the standard deviation.
+    /// Whether the standard deviation is predicted.
     pub sigma: SigmaStep,
     /// Noise of the amplitude, for the prediction; otherwise the calibration's.
     pub noise: Option<NoiseModel>,
@@ -194,8 +195,8 @@ impl Choice {
         Self { method: Method::Paper, ..Self::default() }
     }
 
-    /// Textbook physics for a recording with the `available` channels: `A d²/t`, as far as they tell it, and nothing
-    /// about highlights.
+    /// Textbook physics for a recording with the `available` channels: `A d² / t`, without the factors whose
+    /// channels are missing. Highlights stay.
     #[must_use]
     pub fn textbook(available: Channels) -> Self {
         let time = available.contains(Channels::INTEGRATION_TIME);

@@ -1,14 +1,30 @@
-//! Standardizes the amplitude images of time-of-flight cameras: one material has one value, whatever the
-//! integration time and the distance, without specular outliers.
+//! Standardizes the amplitude images of time-of-flight cameras: afterwards, one material has one value, whatever
+//! the integration time and the distance, and highlights are limited.
 //!
 //! The method is that of Stürmer, Penne and Hornegger, "Standardization of Intensity-Values Acquired by
-//! Time-of-Flight-Cameras" (CVPR Workshops 2008): a lookup table over integration time, a polynomial over
-//! distance, a histogram cutoff for highlights; see [`terms`] and [`specular`]. [`denoise`] smooths the distance
-//! before it scales.
+//! Time-of-Flight-Cameras" (CVPR Workshops 2008): a lookup table over the integration time, a polynomial over the
+//! distance, and a cutoff from the histogram for highlights. Other terms go beyond the paper: the response of saturating
+//! pixels, a spline over the distance, the illumination profile and the angle of incidence.
 //!
-//! [`calibrate`] fits a [`Calibration`] to recordings of your camera. A [`Standardizer`] is planned once, and its
-//! [`Stream`] takes frame after frame, each a [`Frame`]. [`evaluate`] measures how much better the result is. This crate
-//! knows no files and starts no threads.
+//! A [`Frame`] goes in: amplitude in DN, distance in m, integration time in µs, images of height × width.
+//! A [`Standardized`] comes out: the amplitude (DN) expected at the reference time and distance, flags, and on request
+//! the standard deviation of each value. This crate reads and writes no files and starts no threads.
+//!
+//! | module | what it is for |
+//! |---|---|
+//! | [`standardize`] | plan a chain of corrections once, apply it to every frame |
+//! | [`calibrate`] | measure recordings and fit the terms of a camera |
+//! | [`calibration`] | the terms of one camera and the conditions they refer to, as its file holds them |
+//! | [`terms`] | the corrections: the model, parameters and fit of each |
+//! | [`denoise`] | smooth the distance before it scales the amplitude |
+//! | [`specular`] | limit highlights |
+//! | [`evaluate`] | measure how much better the standardized amplitudes are |
+//! | [`diagnose`] | find out what the amplitudes of a recording depend on |
+//! | [`still_scene`] | check that a scene stood still while the integration time varied |
+//! | [`phase`] | amplitude, distance and intensity from the raw bins |
+//! | [`statistics`] | medians, robust slopes and moments that other crates share |
+//! | [`advice`] | what a user can do about an error or a warning |
+//! | [`names`] | the error about a name that does not exist |
 //!
 //! The folder `examples` of this crate has four short programs to read in their order, with frames of a simulated
 //! camera: `01_standardize`, `02_calibrate`, `03_evaluate` and `04_live`.

@@ -1,13 +1,14 @@
-//! Names of steps, rules and tiers. Each stands once, here in the code of what it names; the command line, files,
-//! Python and the documents take it from there.
+//! Names of steps, rules and tiers. Each name is defined once, in the code of what it names; the command line,
+//! files, Python and the documents take it from there. This module holds the error about an unknown name and what
+//! the types with names share.
 
-/// A text that names none of the things it could name.
+/// A text that is none of the expected names.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what} `{found}` found, {} expected", one_of(expected))]
 pub struct UnknownName {
-    /// What is named: `time step`, `response tier`.
+    /// What should be named, such as `time step` or `response tier`.
     pub what: &'static str,
-    /// The text.
+    /// The text found.
     pub found: String,
     /// The names there are.
     pub expected: Vec<&'static str>,
@@ -35,9 +36,8 @@ pub(crate) fn one_of(names: &[&str]) -> String {
     }
 }
 
-/// Declares an enum of plain variants, each with its name and a description (one line of
-/// documentation): `ALL`, `NAMES`,
-/// `name`, `description`, `FromStr`, `Display`, and serde by name.
+/// Declares an enum of plain variants, each with its name and a description (one line of documentation). It gets
+/// `ALL`, `NAMES`, `name`, `description`, `FromStr`, `Display`, and serde by name.
 macro_rules! named {
     (
         $(#[$outer:meta])*
@@ -52,7 +52,7 @@ macro_rules! named {
         }
 
         impl $type {
-            /// All there are.
+            /// All values.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
             /// Their names, in the same order.
             pub const NAMES: &'static [&'static str] = &[$($name),+];

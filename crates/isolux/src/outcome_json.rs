@@ -1,10 +1,10 @@
-//! Figures that are there, or a reason why not, as JSON.
+//! Figures as JSON, or the reason why a figure is missing.
 
 use std::fmt::Display;
 
 use serde::{Serialize, Serializer};
 
-/// Serializes the figure as itself, and the reason with its text in the field `because`.
+/// Serializes a figure as itself; a missing one as its reason, with the reason's text in the field `because`.
 pub(crate) fn serialize<T: Serialize, E: Serialize + Display, S: Serializer>(
     figure: &Result<T, E>,
     serializer: S,

@@ -1,4 +1,6 @@
-//! Did the scene stand still while the integration time varied? Distances tell, since they hardly depend on it.
+//! Checks that a scene stood still while the integration time varied. It compares distances, which hardly depend on
+//! the integration time: the image is cut into blocks, and a block has moved when its mean distance differs from
+//! the median over all frames by more than noise and the camera's own shift explain.
 
 use crate::frame::{Frame, Shape, Window};
 use crate::numerics::differences;
@@ -6,13 +8,16 @@ use crate::numerics::statistics::upper_median;
 
 /// The image is compared in this many blocks along each side.
 const BLOCKS: usize = 8;
-/// Cameras shift their distances with the integration time by a few centimetres; more is movement.
+/// Cameras shift their distances by a few centimetres when the integration time changes; a larger difference is
+/// movement.
 const SHIFT_M: f64 = 0.05;
 /// Block means are compared beyond this many standard errors.
 const STANDARD_ERRORS: f64 = 5.0;
-/// Below this share of the block's largest amplitude per time, it is compressed and its distance distrusted.
+/// A block is compressed where its amplitude per time is below this share of the largest; its distance is then not
+/// used.
 const LINEAR_SHARE: f64 = 0.7;
-/// Frames that are compared at most: a recording whose time changes with every frame would fill the memory.
+/// Largest number of frames that are compared: a recording whose time changes with every frame would fill the
+/// memory.
 const MOST_FRAMES: usize = 4096;
 /// The scene moved when more than this share of the comparable blocks did.
 const MOVED_SHARE: f64 = 0.1;
@@ -25,7 +30,7 @@ struct Block {
     distance_error_m: f64,
 }
 
-/// Watches for movement between frames of different integration times.
+/// Collects the block distances of frames of different integration times and finds movement.
 #[derive(Clone, Debug, Default)]
 pub struct MotionWatch {
     shape: Option<Shape>,
@@ -35,14 +40,14 @@ pub struct MotionWatch {
 /// A scene that did not stand still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Movement {
-    /// Integration time of the first frame that shows it elsewhere than usual, µs.
+    /// Integration time of the first frame in which the scene differs from the median of all frames, µs.
     pub integration_time_us: f64,
-    /// Share of the comparable parts of the image that are elsewhere, 0..=1.
+    /// Share of the comparable blocks that moved, 0..=1.
     pub share: f64,
 }
 
 impl MotionWatch {
-    /// Takes the first frame of a run of equal integration times (µs). A frame without distance says nothing.
+    /// Takes the first frame of a run of equal integration times (µs). Frames without distance are ignored.
     pub fn push(&mut self, time_us: f64, frame: &Frame) {
         let Some(distance_m) = frame.distance_m.as_ref().filter(|_| self.runs.len() < MOST_FRAMES) else {
             return;
@@ -71,7 +76,8 @@ impl MotionWatch {
         self.runs.push((time_us, blocks(shape).map(block).collect()));
     }
 
-    /// The first frame in which too many parts of the image are elsewhere than in the median of all frames.
+    /// The first frame in which too many blocks differ in distance from the median of all frames; `None` when the
+    /// scene stood still or there is nothing to compare.
     #[must_use]
     pub fn verdict(&self) -> Option<Movement> {
         let count = self.runs.first()?.1.len();
@@ -117,7 +123,7 @@ fn blocks(shape: Shape) -> impl Iterator<Item = Window> {
     })
 }
 
-/// Of the finite values; NaN without any.
+/// Median of the finite values; NaN when there are none.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
     upper_median(&mut values).unwrap_or(f64::NAN)

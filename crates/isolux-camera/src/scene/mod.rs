@@ -1,4 +1,4 @@
-//! What stands before the camera, and what is recorded of it.
+//! Scenes: objects, light, and the recording that is made of them.
 
 pub mod builtin;
 pub mod motion;

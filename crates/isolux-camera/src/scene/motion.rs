@@ -1,19 +1,19 @@
-//! Camera and objects on the move while a run is recorded.
+//! Motion of the camera and of objects while a run is recorded.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{InvalidValue, ensure};
 use crate::scene::pose::Pose;
 
-/// Smooth paths of the camera and of objects. Nothing waits for the shutter: every pose is recorded once,
-/// `frames_per_time` poses at the first integration time of the run, as many at the next, after the last the first
-/// again.
+/// Smooth paths of the camera and of objects. Everything moves from frame to frame: every pose is recorded once,
+/// `frames_per_time` poses at the first integration time of the run, as many at the next, and after the last time
+/// the first again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
     /// Number of poses, evenly spread over the paths, both ends included.
     pub poses: u32,
-    /// Who moves.
+    /// Paths of everything that moves.
     #[serde(rename = "path")]
     pub paths: Vec<Path>,
 }

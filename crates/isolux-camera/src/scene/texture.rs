@@ -40,7 +40,7 @@ pub enum Texture {
         /// Reflectivity around the patches.
         border: f64,
     },
-    /// Square tiles, each of a reflectivity of its own, as unforeseeable as those of ordinary things.
+    /// Square tiles, each of a pseudo-random reflectivity of its own.
     Mosaic {
         /// Side of a tile, metres.
         cell_m: f64,
@@ -60,7 +60,7 @@ pub enum Texture {
     },
 }
 
-/// What a texture says of a place.
+/// Reflectivity and label of a place on a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surface {
     pub(crate) reflectivity: f64,

@@ -1,4 +1,4 @@
-//! The channels that have a meaning: name, dimensions of one frame, and the flag of [`Channels`], each told once.
+//! The channels that have a meaning: the name, the dimensions of one frame and the flag of [`Channels`] of each.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub(crate) enum FrameDims {
     NumberOrImage,
     Bins,
     Pose,
-    /// A channel that isolux carries along without knowing what it means.
+    /// A channel without a meaning to isolux, which is carried along.
     Anything,
 }
 
@@ -37,8 +37,8 @@ const KNOWN: [(&str, FrameDims, Channels); 13] = [
     ("flags", FrameDims::Image, Channels::empty()),
 ];
 
-/// The channels that tell the shape of the frames, most important first. A standardized recording without its
-/// input has only the last of them.
+/// The channels from which the shape of the frames is taken, most important first. A standardized recording without
+/// its input has only the last of them.
 const LEADING: [&str; 3] = ["amplitude", "phase_samples", "standardized_amplitude"];
 
 /// Number of flags that [`Channels`] has.
@@ -54,7 +54,7 @@ pub(crate) fn name(flag: Channels) -> &'static str {
     KNOWN.iter().find(|row| row.2 == flag).map_or("", |row| row.0)
 }
 
-/// The place of the channel that tells the shape of the frames.
+/// The place of the channel from which the shape of the frames is taken.
 pub(crate) fn leading<'a>(
     path: &Path,
     names: impl Iterator<Item = &'a str> + Clone,
@@ -99,7 +99,7 @@ impl FrameDims {
         }
     }
 
-    /// The shape that a frame of these dimensions tells; `None` for what is neither an image nor four bins.
+    /// The shape of a frame of these dimensions; `None` for what is neither an image nor four bins.
     pub(crate) fn shape(self, dims: &[usize]) -> Option<Shape> {
         match (self, dims) {
             (Self::Bins, &[4, height, width]) | (Self::Image, &[height, width]) => {

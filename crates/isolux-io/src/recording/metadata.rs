@@ -13,8 +13,7 @@ use crate::error::{RecordingError, listing};
 pub struct Metadata {
     /// The path it was opened by.
     pub path: PathBuf,
-    /// Number of frames; `None` where the recording does not tell it before its end. Once the end has been
-    /// reached, it is known.
+    /// Number of frames; `None` where the recording does not state it. Once the end has been reached, it is known.
     pub frame_count: Option<usize>,
     /// In which order frames can be read.
     pub access: Access,

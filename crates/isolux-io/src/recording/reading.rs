@@ -5,8 +5,8 @@ use isolux::{Channels, Frame, Plane};
 use super::metadata::Metadata;
 use crate::error::RecordingError;
 
-/// A sequence of frames of one camera. Ascending reads are fast; which other orders are possible is told by
-/// [`Metadata::access`].
+/// A sequence of frames of one camera. Ascending reads are fast; [`Metadata::access`] says which other orders are
+/// possible.
 ///
 /// A new format does not implement this trait but [`ChannelSource`](super::ChannelSource).
 pub trait Recording: Send {
@@ -116,7 +116,7 @@ pub fn for_each_frame<E: From<RecordingError>>(
 
 /// The error for a frame beyond the last one.
 pub(crate) fn no_frame(metadata: &Metadata, index: usize) -> RecordingError {
-    // Whoever finds the end knows the number from then on.
+    // The number of frames is known once the end has been found.
     let frame_count = metadata.frame_count.unwrap_or(index);
     RecordingError::NoFrame { path: metadata.path.clone(), index, frame_count }
 }

@@ -28,8 +28,8 @@ pub trait ChannelSource: Send {
     /// [`rewind`](Self::rewind) follows.
     ///
     /// # Errors
-    /// What the files bring. The source checks what it needs to read on; whether the channels have the dimensions
-    /// and types of its description is checked for it.
+    /// Those of reading the files. The source checks what it needs to read on; whether the channels have the
+    /// dimensions and types of its description is checked for it.
     fn load(&mut self, index: usize, channels: &[usize]) -> Result<bool, RecordingError>;
 
     /// The current frame of a channel that was loaded with it. Of any other channel, the contents do not matter.
@@ -39,18 +39,18 @@ pub trait ChannelSource: Send {
     /// or one with [`Access::Random`] that does not know its number of frames.
     ///
     /// # Errors
-    /// What the files bring.
+    /// Those of reading the files.
     fn rewind(&mut self) -> Result<(), RecordingError> {
         Ok(())
     }
 }
 
-/// What a source tells of itself.
+/// The description of a source.
 #[derive(Clone, Debug)]
 pub struct SourceDescription {
     /// The path that the recording was opened by.
     pub path: PathBuf,
-    /// Number of frames, at least 1; `None` where only reading to the end tells it.
+    /// Number of frames, at least 1; `None` where it is only known after reading to the end.
     pub frame_count: Option<usize>,
     /// In which order frames can be read.
     pub access: Access,

@@ -1,4 +1,5 @@
-//! What a recording's frames say before and after standardization, with the textbook's and the paper's chain beside.
+//! Evaluates the frames of a recording before and after standardization, also by the textbook's and the paper's
+//! chain.
 
 mod evaluation;
 mod rivals;
@@ -22,38 +23,38 @@ pub use self::samples::{SampleFrame, first_frames_at, sample_frames};
 /// Which pixels count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pixels {
-    /// Before and after, those with a value.
+    /// Before and after, all pixels with a value.
     #[default]
     Valid,
-    /// Before and after the same: those with a standardized value and neither LOW_SIGNAL nor SATURATED.
+    /// Before and after the same pixels: those with a standardized value that are neither LOW_SIGNAL nor SATURATED.
     Trusted,
 }
 
-/// How to go about it.
+/// Options of an assessment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AssessOptions<'a> {
     /// The calibration that the chain was planned with.
     pub calibration: Option<&'a Calibration>,
     /// Which pixels count.
     pub pixels: Pixels,
-    /// Evaluate the textbook's and the paper's chain on the same frames, as far as recording and calibration allow
-    /// them and they do not do the same.
+    /// Also evaluate the textbook's and the paper's chain on the same frames, where recording and calibration allow
+    /// them and they differ from the chosen chain.
     pub rivals: bool,
 }
 
-/// What the frames of a recording say before and after standardization.
+/// The figures of a recording before and after standardization.
 #[derive(Clone, Debug)]
 pub struct Assessment {
     /// Number of frames.
     pub frames: usize,
     /// The figures before and after.
     pub comparison: Comparison,
-    /// The chains beside the chosen one.
+    /// The other chains and their figures.
     pub rivals: Vec<Standing>,
     /// Mean over the counted pixels at each integration time, increasing.
     pub means: Vec<MeanAtTime>,
-    /// A few frames that show the range: those of the shortest, the reference and the longest time, or the first,
-    /// middle and last.
+    /// A few frames: those of the shortest, the reference and the longest integration time, or the first, middle
+    /// and last.
     pub shown_frames: Vec<usize>,
 }
 
@@ -146,7 +147,7 @@ mod tests {
         let times = [400.0, 200.0, 800.0, 200.0].map(Some);
         assert_eq!(shown_frames(&times, Some(0)), [0, 1, 2]);
         assert_eq!(shown_frames(&times, Some(1)), [1, 2]);
-        // Without times, those in the first place, the middle and the last.
+        // Without times, the first, the middle and the last frame.
         assert_eq!(shown_frames(&[None; 5], None), [0, 2, 4]);
         assert_eq!(shown_frames(&[None], None), [0]);
     }

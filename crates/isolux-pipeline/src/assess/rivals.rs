@@ -1,4 +1,4 @@
-//! The chains that an evaluation shows beside the chosen one, on the same frames: the textbook's and the paper's.
+//! The chains that an evaluation compares with the chosen one, on the same frames: the textbook's and the paper's.
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator};
 use isolux::standardize::StandardizeError;
@@ -20,7 +20,7 @@ pub struct Standing {
     pub comparison: Comparison,
 }
 
-/// One rival at work.
+/// One rival with its stream and evaluator.
 struct Rival {
     name: &'static str,
     stream: Stream,
@@ -32,12 +32,12 @@ struct Rival {
 pub(super) struct Rivals(Vec<Rival>);
 
 impl Rivals {
-    /// Nobody.
+    /// No rivals.
     pub(super) fn none() -> Self {
         Self(Vec::new())
     }
 
-    /// Those that the recording and the calibration allow and that do not do the same as `chosen`.
+    /// The rivals that recording and calibration allow and that differ from `chosen`.
     pub(super) fn new(
         chosen: &Standardizer,
         calibration: Option<&Calibration>,
@@ -45,7 +45,7 @@ impl Rivals {
         shape: Shape,
     ) -> Self {
         let rival = |(name, choice): (&'static str, Choice)| {
-            // A chain that cannot be planned here is nobody's rival.
+            // A chain that cannot be planned for this recording is left out.
             let standardizer = Standardizer::plan(&choice, calibration, traits).ok()?;
             let same = does_the_same(&standardizer, chosen) || standardizer.steps().is_empty();
             let evaluator = Evaluator::new(shape, EvaluationSettings::default());
@@ -82,7 +82,7 @@ impl Rivals {
         Ok(())
     }
 
-    /// Everybody's figures, against those of the raw amplitude.
+    /// The figures of every rival, compared with those of the raw amplitude.
     pub(super) fn standings(&self, raw: &Evaluator) -> Vec<Standing> {
         let standing = |rival: &Rival| Standing {
             name: rival.name,

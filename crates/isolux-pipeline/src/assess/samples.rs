@@ -1,4 +1,4 @@
-//! Single frames before and after standardization, to look at.
+//! Single frames before and after standardization, for pictures.
 
 use isolux::{Channels, Frame, IntegrationTime, Plane, Standardizer};
 

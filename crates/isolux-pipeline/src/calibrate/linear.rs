@@ -1,4 +1,4 @@
-//! Frames made linear before anything is fitted to them, where response and recording allow it.
+//! Makes frames linear before anything is fitted to them, where response and recording allow it.
 
 use isolux::calibrate::MeasureError;
 use isolux::standardize::FrameLineariser;
@@ -7,7 +7,7 @@ use isolux::{Channels, Frame};
 
 use crate::source::SourceFacts;
 
-/// What makes the frames of one recording linear, and the last one that it made so.
+/// Makes the frames of one recording linear; holds the last linear frame.
 pub(super) struct Linear(Option<(FrameLineariser, Frame)>);
 
 impl Linear {
@@ -26,7 +26,7 @@ impl Linear {
         self.0.as_ref().map_or(Channels::empty(), |(lineariser, _)| lineariser.channels())
     }
 
-    /// `frame` made linear; as it is where that is not possible.
+    /// `frame`, made linear where that is possible.
     pub(super) fn frame<'a>(&'a mut self, frame: &'a Frame) -> Result<&'a Frame, MeasureError> {
         let Some((lineariser, linear)) = &mut self.0 else { return Ok(frame) };
         linear.clone_from(frame);

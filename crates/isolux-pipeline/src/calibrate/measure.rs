@@ -13,9 +13,9 @@ use crate::frames;
 use crate::observer::{Observer, Work};
 use crate::source::FrameSource;
 
-/// What tells the fill of a pixel, where it is recorded.
+/// The channels that show the fill of a pixel.
 const RESPONSE_CHANNELS: Channels = Channels::INTENSITY.union(Channels::PHASE_SAMPLES);
-/// What every kind of recording is measured by.
+/// What the measurements of all kinds of recordings have in common.
 const MEASURED_CHANNELS: Channels =
     Channels::AMPLITUDE.union(Channels::DISTANCE).union(Channels::INTEGRATION_TIME);
 
@@ -71,7 +71,7 @@ impl Measurer<'_> {
         Ok(sweep.finish())
     }
 
-    /// Looks at the frames once to learn where their poses come from, then measures them.
+    /// Reads the frames once to find out where their poses come from, then measures them.
     pub(super) fn scene_observations(
         &mut self,
         source: &mut dyn FrameSource,
@@ -79,7 +79,7 @@ impl Measurer<'_> {
     ) -> Result<SceneObservations, PipelineError> {
         let (facts, name) = (source.facts(), self.introduce(source));
         let mut linear = Linear::new(&facts, response);
-        // Without a response, a still scene may tell it.
+        // Without a response, a still scene may determine it.
         let besides = if linear.is_possible() { linear.channels() } else { RESPONSE_CHANNELS };
         let mut scout = MotionScout::default();
         self.each(source, Work::SceneMotion, Channels::POSE, |frame| {

@@ -1,8 +1,8 @@
-//! Sweeps, targets and scenes in, a calibration out.
+//! Fits a calibration to recordings of sweeps, targets and scenes.
 //!
-//! The protocol has two stages, since whatever is fitted after the response of the pixels needs amplitudes that it has
-//! made linear: exposure sweeps are measured and fitted first; then distance sweeps, targets and scenes are measured,
-//! linear where the response and their channels allow it, and everything else is fitted.
+//! There are two stages. First, exposure sweeps are measured, and the terms of the integration time are fitted to
+//! them. Then distance sweeps, targets and scenes are measured, with linear frames where the fitted response and
+//! their channels allow it, and all other terms are fitted.
 
 mod linear;
 mod measure;
@@ -68,8 +68,8 @@ impl<'a> CalibrationPaths<'a> {
     }
 }
 
-/// Measures the recordings and fits what they determine, for the camera of this name, or else of the name that the
-/// recordings give. What could not be told, and why, stands in the report, or in the error's
+/// Measures the recordings and fits the terms that they determine. The camera's name is `camera`, or else the one
+/// in the recordings. What could not be determined, and why, is in the report, or in the error's
 /// [`warnings`](PipelineError::warnings).
 ///
 /// # Errors
@@ -83,7 +83,7 @@ pub fn calibrate(
     measure(settings, sources, observer)?.fit(camera, observer)
 }
 
-/// What recordings show, before the last fits.
+/// Measured recordings, before the second stage of fits.
 #[derive(Clone, Debug)]
 pub struct Measured {
     exposure: ExposureFit,
@@ -94,12 +94,12 @@ pub struct Measured {
     distance_sweeps: Vec<String>,
 }
 
-/// Measures recordings in the order of the protocol. Distance sweeps tell the modulation frequency, targets where there
-/// are none, scenes where there are neither, unless the settings do.
+/// Measures recordings in the order of the two stages. The modulation frequency is that of the settings, or else of
+/// the distance sweeps, of the targets if there are none, or of the scenes if there are neither.
 ///
 /// # Errors
-/// [`PipelineError::Measure`] for recordings that cannot serve; [`PipelineError::Fit`] when an exposure sweep has no
-/// table; those of reading; [`PipelineError::Interrupted`] once the observer has cancelled.
+/// [`PipelineError::Measure`] for recordings that cannot be measured; [`PipelineError::Fit`] when no table can be
+/// fitted to an exposure sweep; those of reading; [`PipelineError::Interrupted`] once the observer has cancelled.
 pub fn measure(
     settings: &CalibrateSettings,
     sources: CalibrationSources<'_>,
@@ -136,11 +136,11 @@ pub fn measure(
 }
 
 impl Measured {
-    /// Fits everything that the recordings determine, for the camera of this name, or else of the name that the
-    /// recordings give.
+    /// Fits every term that the recordings determine. The camera's name is `camera`, or else the one in the
+    /// recordings.
     ///
     /// # Errors
-    /// [`PipelineError::Fit`] when no recording was given or a term cannot be fitted from what is there.
+    /// [`PipelineError::Fit`] when no recording was given or a term cannot be fitted.
     pub fn fit(
         self,
         camera: Option<String>,
@@ -154,8 +154,8 @@ impl Measured {
         fitted.map_err(fit_error(&self.distance_sweeps))
     }
 
-    /// The same, as a camera would show it that delivers no more than amplitude and distance: distance sweeps as they
-    /// were delivered, none of them made linear.
+    /// The same without the linear measurements of distance sweeps, as for a camera that delivers only amplitude
+    /// and distance.
     #[must_use]
     pub fn of_delivered_amplitudes(&self) -> Self {
         let measurements = self.measurements.clone().of_delivered_amplitudes();
@@ -173,7 +173,7 @@ fn fit_error(distance_sweeps: &[String]) -> impl Fn(CalibrateError) -> PipelineE
     |cause| PipelineError::Fit { distance_sweeps: distance_sweeps.to_vec(), cause }
 }
 
-/// The frequency that all of these recordings name; one that does not leaves it open.
+/// The modulation frequency of all these recordings; `None` where they differ or one does not state it.
 fn modulation_frequency_hz(sources: &Frames<'_>, observer: &dyn Observer) -> Option<f64> {
     let named = sources.iter().map(|source| source.facts().info.modulation_frequency_hz);
     let mut frequencies: Vec<Option<f64>> = named.collect();

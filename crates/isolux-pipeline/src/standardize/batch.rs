@@ -11,7 +11,7 @@ use crate::source::{FrameSource, SourceFacts};
 /// Memory for the frames that are worked on at once, however many threads there are.
 const BATCH_BYTES: usize = 128 << 20;
 
-/// Reading goes frame by frame and in order; only the arithmetic is shared out.
+/// Frames are read one by one and in order; only the arithmetic is shared among threads.
 pub(super) struct Batch<'a> {
     standardizer: &'a Standardizer,
     stream: Stream,
@@ -31,7 +31,7 @@ pub(super) struct Slot {
 }
 
 impl<'a> Batch<'a> {
-    /// One frame at first, which tells what a frame costs.
+    /// One frame at first, from which the memory of a frame is measured.
     pub(super) fn new(facts: &SourceFacts, standardizer: &'a Standardizer, kept: &'a [ChannelInfo]) -> Self {
         let slots = vec![Slot::new(facts.shape, kept.len())];
         Self { standardizer, stream: standardizer.stream(), kept, slots }
@@ -60,7 +60,7 @@ impl<'a> Batch<'a> {
             }
             let taken = self.stream.prepare(&slot.frame, &mut slot.prepared);
             taken.map_err(|error| PipelineError::frame(name, index)(error.into()))?;
-            // Now, not after the batch: a source may have no way back to a frame, or a slow one.
+            // Now and not after the batch: going back to a frame may be impossible or slow.
             for (channel, bytes) in self.kept.iter().zip(&mut slot.kept) {
                 source.read_raw(&channel.name, index, bytes)?;
             }

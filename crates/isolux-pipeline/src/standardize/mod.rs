@@ -1,4 +1,4 @@
-//! A recording in, standardized frames out: on all threads, in bounded memory, in order.
+//! Standardizes a recording: on all threads, in bounded memory, with the results in order.
 
 mod batch;
 mod provenance;
@@ -18,16 +18,16 @@ pub use self::provenance::{step_json, steps};
 pub use self::sink::{FLAGS, FrameSink, NativeSink, OutputFormat, OutputFrame, SIGMA, VALUES};
 pub use self::summary::Summary;
 
-/// How to go about it.
+/// Options of standardizing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StandardizeOptions<'a> {
     /// The calibration that the chain was planned with, for the output's record.
     pub calibration: Option<&'a Calibration>,
     /// Hand the source's stored channels on, verbatim.
     pub keep_input: bool,
-    /// Threads to use; all cores where it is not said. The output does not depend on it.
+    /// Number of threads; `None` uses all cores. The output does not depend on it.
     pub threads: Option<usize>,
-    /// Frames that are merged into one; none keeps each.
+    /// Brackets whose frames are merged into one; `None` keeps each frame.
     pub brackets: Option<&'a Brackets>,
 }
 
@@ -35,10 +35,10 @@ pub struct StandardizeOptions<'a> {
 /// behind.
 ///
 /// # Errors
-/// What the source and the sink bring; [`PipelineError::Frame`] for frames that the chain cannot take;
-/// [`PipelineError::TimesRefused`] when no pixel has a value for its integration time;
-/// [`PipelineError::ChannelKept`], [`PipelineError::KeptOfMerged`] and [`PipelineError::Merge`] for options that do not
-/// go with the source or the chain; [`PipelineError::Interrupted`] once the observer has cancelled.
+/// Those of the source and the sink; [`PipelineError::Frame`] for frames that the chain cannot standardize;
+/// [`PipelineError::TimesRefused`] when no pixel has a value because of the integration times;
+/// [`PipelineError::ChannelKept`], [`PipelineError::KeptOfMerged`] and [`PipelineError::Merge`] for options that do
+/// not fit the source or the chain; [`PipelineError::Interrupted`] once the observer has cancelled.
 pub fn standardize(
     source: &mut dyn FrameSource,
     standardizer: &Standardizer,
@@ -102,7 +102,7 @@ fn each_batch(
     Ok(output.summary)
 }
 
-/// Where frames go, perhaps by way of a merged one.
+/// Hands frames to the sink, merged where there are brackets.
 struct Output<'a> {
     sink: &'a mut dyn FrameSink,
     merging: Option<Merging>,
@@ -130,8 +130,8 @@ impl Output<'_> {
     }
 }
 
-/// The source's channels that go into the output. They must not have the names of the new ones: the results of a
-/// recording that is standardized again cannot be kept.
+/// The source's channels that are copied to the output. They must not have the names of the new channels, so that a
+/// recording that is standardized again cannot keep its earlier results.
 fn kept_channels(
     source: &dyn FrameSource,
     facts: &SourceFacts,

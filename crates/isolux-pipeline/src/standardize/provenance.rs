@@ -1,4 +1,4 @@
-//! What a standardized recording says of itself.
+//! The record of how a recording was standardized.
 
 use isolux::standardize::AppliedStep;
 use isolux::{Calibration, PixelFlags, Reference, Standardizer};

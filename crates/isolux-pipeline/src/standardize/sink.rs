@@ -15,7 +15,7 @@ pub const FLAGS: &str = "flags";
 /// Name of the channel of their predicted standard deviation.
 pub const SIGMA: &str = "sigma";
 
-/// What a sink is told before the first frame.
+/// What a sink must know before the first frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputFormat {
     /// The source, for messages.
@@ -26,7 +26,7 @@ pub struct OutputFormat {
     pub frame_count: Option<usize>,
     /// True where frames have a predicted standard deviation.
     pub sigma: bool,
-    /// Channels of the source that are handed on verbatim.
+    /// Channels of the source that are copied verbatim.
     pub kept: Vec<ChannelInfo>,
 }
 
@@ -42,7 +42,7 @@ pub struct OutputFrame<'a> {
 /// Where standardized frames go: a recording of some format, an array, a screen. Frames come in their order. A sink that
 /// is dropped before it is finished leaves nothing behind.
 pub trait FrameSink {
-    /// Told once, before the first frame.
+    /// Called once, before the first frame.
     ///
     /// # Errors
     /// [`PipelineError`] when the sink cannot take such frames.
@@ -54,7 +54,7 @@ pub trait FrameSink {
     /// [`PipelineError`] when it cannot be taken.
     fn push(&mut self, frame: OutputFrame<'_>) -> Result<(), PipelineError>;
 
-    /// Told once, after the last frame: `info` is that of the source, with what was done to it.
+    /// Called once, after the last frame. `info` is that of the source, with the record of the steps.
     ///
     /// # Errors
     /// [`PipelineError`] when the result cannot be completed.

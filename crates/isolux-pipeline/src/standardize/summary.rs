@@ -1,4 +1,4 @@
-//! What became of the pixels of a recording.
+//! Counts over the pixels of a recording.
 
 use isolux::standardize::FrameSummary;
 use serde::Serialize;
@@ -12,13 +12,14 @@ pub struct Summary {
     pub pixels: usize,
     /// Pixels with a value.
     pub valid: usize,
-    /// Measured pixels whose integration time is above the calibrated range, or unknown: refused.
+    /// Measured pixels whose integration time is unknown or above the calibrated range; they become INVALID.
     pub time_refused: usize,
-    /// Measured pixels below the calibrated integration times: continued as 1/t and flagged.
+    /// Measured pixels whose integration time is below the calibrated range; extrapolated as 1/t and flagged.
     pub time_extrapolated: usize,
-    /// Pixels outside the calibrated distances: continued as d² and flagged.
+    /// Pixels outside the calibrated distances; extrapolated as d² and flagged.
     pub distance_extrapolated: usize,
-    /// Pixels outside the profile's support or steeper than was seen: continued and flagged.
+    /// Pixels outside the profile's support, or steeper than the angle term was fitted on; extrapolated and
+    /// flagged.
     pub illumination_extrapolated: usize,
     /// Pixels limited as specular.
     pub specular: usize,

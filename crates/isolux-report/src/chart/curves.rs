@@ -1,4 +1,4 @@
-//! What of a series is drawn: lines cut at the frame and at gaps, markers inside the frame.
+//! The drawn parts of a series: lines cut at the frame and at gaps, markers inside the frame.
 
 use super::scale::Extent;
 use crate::page::{Chart, Series, Stroke};
@@ -6,7 +6,7 @@ use crate::page::{Chart, Series, Stroke};
 /// A place in the frame: 0 to 1 along either axis.
 pub(super) type Place = (f64, f64);
 
-/// Markers along a line that only tell it from its neighbours.
+/// Number of markers along a line that only distinguish it from its neighbours.
 const KEYS: usize = 5;
 
 /// One series, ready to be drawn.
@@ -16,7 +16,7 @@ pub(super) struct Curve {
     pub(super) lines: Vec<Vec<Place>>,
     /// A marker for each point of the data, where the stroke has markers, and for points that no line reaches.
     pub(super) markers: Vec<Place>,
-    /// Few markers along a line, so that it is told from others without its colour.
+    /// A few markers along a line, so that it can be distinguished from others without its colour.
     pub(super) keys: Vec<Place>,
 }
 

@@ -1,4 +1,4 @@
-//! What tells series apart: colours, and shapes without them.
+//! Colours and shapes that distinguish series.
 
 use std::f64::consts::TAU;
 

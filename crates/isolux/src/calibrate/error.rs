@@ -11,20 +11,20 @@ use crate::terms::lut::LutError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrateError {
-    /// No recording given.
+    /// No recording is given.
     #[error(
         "no recording given: at least one exposure sweep, distance sweep, target or scene expected, which is what \
          terms are fitted to"
     )]
     NothingToFit,
-    /// The table could not be fitted.
+    /// The lookup table could not be fitted.
     #[error("exposure sweep {recording}: {source}")]
     Lut {
         /// The recording.
         recording: String,
         /// Why.
         source: LutError,
-        /// What was left out before, and why.
+        /// What was left out before the fit failed, and why.
         warnings: Vec<FitWarning>,
     },
     /// The cubic could not be fitted.
@@ -32,19 +32,19 @@ pub enum CalibrateError {
     Cubic {
         /// Why.
         source: CubicError,
-        /// What was left out before, and why.
+        /// What was left out before the fit failed, and why.
         warnings: Vec<FitWarning>,
     },
-    /// Targets give no term.
+    /// No term could be fitted to the targets.
     #[error(transparent)]
     Target(#[from] TargetError),
-    /// Scenes of unlike formats.
+    /// The scenes' frames differ in shape.
     #[error("scene {0}: one camera, one format")]
     SceneShapes(UnlikeShapes),
 }
 
 impl CalibrateError {
-    /// What was left out before the fit failed: often the reason.
+    /// What was left out before the fit failed, which is often the reason.
     #[must_use]
     pub fn warnings(&self) -> &[FitWarning] {
         match self {

@@ -8,13 +8,13 @@ use crate::advice::Advice;
 use crate::numerics::robust::TUKEY_CUTOFF;
 use crate::terms::{Angle, FitQuality, Profile, Source, Spline, root_mean_square};
 
-/// Cells of the image whose ln v has a larger predicted standard error do not belong to the profile's support.
+/// Cells of the image whose ln v has a larger predicted standard error are outside the profile's support.
 const LARGEST_CELL_ERROR: f64 = 0.05;
 /// Parts that the frames are divided into for the held-out residual.
 pub(super) const FOLDS: u32 = 5;
 
-/// Root mean square of the relative error on the frames of these `folds`, each left out in turn; `None` with too few
-/// frames. `frames` has the frame of each observation.
+/// Root mean square of the relative error on the frames of these `folds`, each left out in turn; `None` with too
+/// few frames. `frames` holds the frame number of each observation.
 pub(super) fn held_out(
     observations: &[Observation],
     frames: &[u32],
@@ -31,7 +31,7 @@ pub(super) fn held_out(
         let tested: Vec<usize> = (0..training.len()).filter(tested).collect();
         tested.iter().for_each(|&index| training[index].weight = 0.0);
         let Ok(fit) = joint::solve(&training, model) else { continue };
-        // Outliers of the whole are no test of the law: their share is told beside it.
+        // Outliers of the whole fit do not test the law; their share is reported separately.
         let cutoff = TUKEY_CUTOFF * fit.sigma;
         let errors = tested.iter().map(|&index| {
             let scale = f64::from(observations[index].weight).sqrt();
@@ -44,7 +44,7 @@ pub(super) fn held_out(
     (squares.1 > 0.0).then(|| (squares.0 / squares.1).sqrt())
 }
 
-/// A factor that is observed, but becomes no term.
+/// A factor of the joint model that does not become a term.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FactorWarning {
@@ -52,22 +52,22 @@ pub enum FactorWarning {
     Refused {
         /// Why.
         reason: Refusal,
-        /// Unknowns of the model beside the surfaces' brightnesses.
+        /// Unknowns of the model, without the brightness of each surface.
         unknowns: usize,
         /// Rank of its reduced normal matrix.
         rank: usize,
     },
-    /// A distance law that was seen, but not at the reference distance.
+    /// A distance law whose observations do not cover the reference distance.
     ReferenceNotSeen {
         /// Reference, m.
         reference_m: f64,
-        /// Distances that were seen, m.
+        /// Observed distances, least and greatest, m.
         seen_m: [f64; 2],
     },
 }
 
 impl FactorWarning {
-    /// The refusal of one factor of a fit, where there is one.
+    /// The warning about one factor, if it was refused.
     pub(super) fn refused(fit: &JointFit, factor: Factor) -> Option<Self> {
         let reason = fit.refusal(factor)?.clone();
         Some(Self::Refused { reason, unknowns: fit.unknowns, rank: fit.rank })
@@ -98,7 +98,7 @@ impl fmt::Display for FactorWarning {
     }
 }
 
-/// A fit, and what is to be said of it in the calibration.
+/// A fit, and what the calibration records about it.
 pub(super) struct Fitted<'a> {
     pub(super) observations: &'a [Observation],
     pub(super) fit: &'a JointFit,
@@ -119,7 +119,7 @@ impl Fitted<'_> {
         }
     }
 
-    /// The law over distance, where it is determined.
+    /// The law over distance; `None` where it is not determined.
     pub(super) fn spline(&self) -> Result<Option<Spline>, FactorWarning> {
         let Some(law) = &self.fit.distance else { return Ok(None) };
         let (reference_m, seen_m) = (law.reference_distance_m, law.valid_distance_m);
@@ -136,7 +136,7 @@ impl Fitted<'_> {
         Ok(Some(spline).filter(|spline| spline.check().is_ok()))
     }
 
-    /// The illumination profile, where it is determined.
+    /// The illumination profile; `None` where it is not determined.
     pub(super) fn profile(&self) -> Option<Profile> {
         let profile = self.fit.profile.as_ref()?;
         let supported =
@@ -152,7 +152,7 @@ impl Fitted<'_> {
         Some(profile).filter(|profile| profile.check().is_ok())
     }
 
-    /// The exponent of the cosine, where it is determined.
+    /// The exponent of the cosine; `None` where it is not determined.
     pub(super) fn angle(&self) -> Option<Angle> {
         let exponent = self.fit.angle_exponent?;
         let finding = self.fit.findings.iter().find(|finding| finding.factor == Factor::Angle)?;
@@ -169,7 +169,7 @@ impl Fitted<'_> {
         Some(angle).filter(|angle| angle.check().is_ok())
     }
 
-    /// Cosines that all but the outermost thousandths of the observations lie between.
+    /// Range of the observed cosines, without the outermost thousandth at either end.
     fn cosines(&self) -> [f64; 2] {
         let kept = self.observations.iter().zip(&self.fit.weights).filter(|(_, weight)| **weight > 0.0);
         let mut cosines: Vec<f64> = kept.map(|(observation, _)| f64::from(observation.cosine)).collect();

@@ -1,5 +1,4 @@
-//! From measurements to terms, in two stages: what the integration time does, then everything that is fitted to linear
-//! amplitudes.
+//! Fits terms to measurements in two stages: first those of the integration time, then all others.
 
 use super::distance::{self, DistanceFit, ReferenceDecays};
 use super::exposure::{self, ExposureCurve, TableError};
@@ -8,14 +7,14 @@ use super::{CalibrateError, CalibrateSettings, FitReport, FitWarning, Measuremen
 use crate::calibration::Calibration;
 use crate::terms::Response;
 
-/// The first stage of a calibration: what exposure sweeps determine. Whatever is fitted after it needs the response, to
-/// make its frames linear.
+/// The first stage of a calibration: the terms that exposure sweeps determine. The second stage needs the fitted
+/// response to make its frames linear.
 ///
 /// 1. Measure the exposure sweeps, [`ExposureSweep`](super::ExposureSweep), and fit them: [`ExposureFit::new`].
 /// 2. With [`ExposureFit::response`], make the frames of all other recordings linear, where their channels allow it
-///    ([`FrameLineariser`](crate::standardize::FrameLineariser)): amplitudes that grow in proportion to the light. Measure
-///    distance sweeps of frames as they were delivered *and* of linear ones; targets and scenes of linear ones, or of
-///    those delivered where there are none. Collect them in [`Measurements`].
+///    ([`FrameLineariser`](crate::standardize::FrameLineariser)): their amplitudes are then in proportion to the
+///    light. Measure each distance sweep twice, with frames as delivered *and* with linear frames. Measure targets
+///    and scenes once, with linear frames where possible. Collect the results in [`Measurements`].
 /// 3. Fit the other terms: [`ExposureFit::complete`].
 #[derive(Clone, Debug)]
 pub struct ExposureFit {
@@ -25,11 +24,10 @@ pub struct ExposureFit {
     warnings: Vec<FitWarning>,
 }
 
-/// Fits every term that exposure sweeps and distance sweeps of frames as they were delivered determine: both stages at
-/// once.
+/// Fits every term that exposure sweeps and distance sweeps determine, both stages at once, without linear frames.
 ///
 /// # Errors
-/// [`CalibrateError`] when no sweep is given or a term cannot be fitted from what is there.
+/// [`CalibrateError`] when no sweep is given or a term cannot be fitted.
 pub fn fit(
     settings: &CalibrateSettings,
     camera: Option<String>,
@@ -42,14 +40,14 @@ pub fn fit(
 }
 
 impl ExposureFit {
-    /// Fits every term that exposure sweeps determine; without one, none.
+    /// Fits every term that exposure sweeps determine. Without sweeps, there is no term.
     ///
     /// # Errors
-    /// [`CalibrateError::Lut`] when a sweep has no table.
+    /// [`CalibrateError::Lut`] when no table can be fitted to a sweep.
     pub fn new(settings: &CalibrateSettings, curves: Vec<ExposureCurve>) -> Result<Self, CalibrateError> {
         let mut calibration = Calibration::new(None, settings.reference);
         let warnings = if curves.is_empty() {
-            // Nothing says what the amplitudes of another time would be.
+            // Without a table, amplitudes cannot be brought to another time.
             calibration.reference.integration_time_us = None;
             Vec::new()
         } else {
@@ -65,16 +63,16 @@ impl ExposureFit {
         Ok(Self { settings: settings.clone(), calibration, curves, warnings })
     }
 
-    /// The response that was fitted.
+    /// The fitted response, if there is one.
     #[must_use]
     pub fn response(&self) -> Option<&Response> {
         self.calibration.terms.response.as_ref()
     }
 
-    /// Fits every other term that the recordings determine, for the camera of this name.
+    /// Fits every other term that the recordings determine. `camera` is the name of the camera.
     ///
     /// # Errors
-    /// [`CalibrateError`] when no recording is given or a term cannot be fitted from what is there.
+    /// [`CalibrateError`] when no recording is given or a term cannot be fitted.
     pub fn complete(
         self,
         camera: Option<String>,

@@ -1,14 +1,14 @@
-//! Why a frame cannot be measured, and recordings of unlike formats.
+//! Why a frame cannot be measured, and why recordings do not fit together.
 
 use crate::advice::Advice;
 use crate::frame::{Shape, ShapeError};
 use crate::standardize::StandardizeError;
 
-/// Why a frame of a recording cannot serve its sweep.
+/// Why a frame cannot be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {
-    /// Frames without a single integration time in a sweep.
+    /// A frame of an exposure sweep without one known integration time for all pixels.
     #[error(
         "frame {frame}: integration time is {found}, one known time for the whole frame expected: \
              a sweep varies the time from frame to frame"
@@ -16,10 +16,10 @@ pub enum MeasureError {
     NoSingleTime {
         /// Frame number, from 0.
         frame: usize,
-        /// What is there.
+        /// What was found, in words.
         found: &'static str,
     },
-    /// A distance sweep without distances.
+    /// A frame of a distance sweep without distances.
     #[error(
         "frame {frame}: no distance channel found, one expected: a distance sweep is measured against it"
     )]
@@ -27,13 +27,13 @@ pub enum MeasureError {
         /// Frame number, from 0.
         frame: usize,
     },
-    /// A frame without a pose where poses are said to be recorded.
+    /// A frame without a pose in a recording whose poses were announced.
     #[error("frame {frame}: no pose (`world_from_camera`) found, one for every frame expected")]
     NoPose {
         /// Frame number, from 0.
         frame: usize,
     },
-    /// A pose that is not rigid.
+    /// A pose that is not a rigid transform.
     #[error(
         "frame {frame}: `world_from_camera` is no rigid transform: a rotation (orthonormal, no mirror), a translation \
          in metres and a last row of 0 0 0 1 expected"
@@ -42,7 +42,7 @@ pub enum MeasureError {
         /// Frame number, from 0.
         frame: usize,
     },
-    /// A frame whose planes do not fit together.
+    /// A frame whose planes differ in shape.
     #[error("frame {frame}: {source}")]
     Shape {
         /// Frame number, from 0.
@@ -50,7 +50,7 @@ pub enum MeasureError {
         /// The plane.
         source: ShapeError,
     },
-    /// A target's recording without labels.
+    /// A frame of a target without labels.
     #[error(
         "frame {frame}: no target channel found, one expected: its labels say which pixels are one material"
     )]
@@ -58,10 +58,10 @@ pub enum MeasureError {
         /// Frame number, from 0.
         frame: usize,
     },
-    /// A camera that moves, without intrinsics.
+    /// A recording of a moving camera without intrinsics.
     #[error(
-        "no intrinsics {{fx, fy, cx, cy}} of the recording found, expected: a camera that moves sees its surfaces \
-         through them"
+        "no intrinsics {{fx, fy, cx, cy}} of the recording found, expected: the rays of a moving camera are \
+         computed from them"
     )]
     NoIntrinsics,
     /// A frame that the response cannot make linear.
@@ -80,21 +80,21 @@ impl MeasureError {
     }
 }
 
-/// Recordings of one kind whose images differ in format.
+/// Recordings of one kind whose images differ in shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{recording}: images of {found} found, {expected}, as in {first} expected")]
 pub struct UnlikeShapes {
     /// The recording.
     pub recording: String,
-    /// Its format.
+    /// Shape of its images.
     pub found: Shape,
-    /// That of the first recording.
+    /// Shape of the first recording's images.
     pub expected: Shape,
     /// The first recording.
     pub first: String,
 }
 
-/// The format that all of these recordings share; `None` without a recording.
+/// The shape that all of these recordings share; `None` without a recording.
 ///
 /// # Errors
 /// [`UnlikeShapes`] names the first that differs.

@@ -1,4 +1,4 @@
-//! Measured recordings of everything but the integration time.
+//! Measured recordings for the second stage of a calibration.
 
 use super::distance::ReferenceDecays;
 use super::scene::SceneObservations;
@@ -6,41 +6,41 @@ use super::target::TargetWindows;
 
 /// Measured recordings for the second stage of a calibration, [`ExposureFit::complete`](super::ExposureFit::complete).
 ///
-/// One law over distance cannot be that of linear and of compressed amplitudes at once. So the spline is fitted to linear
-/// frames when every distance sweep has them, and to the frames as they were delivered when one has not.
+/// One law over distance cannot describe both linear and saturating amplitudes. The spline is therefore fitted to
+/// linear frames if every distance sweep has them, else to the frames as delivered.
 #[derive(Clone, Debug, Default)]
 pub struct Measurements {
     delivered: Vec<ReferenceDecays>,
-    /// Of as many of the sweeps as have linear frames.
+    /// The linear measurements of those sweeps that have them.
     linear: Vec<ReferenceDecays>,
     targets: Vec<TargetWindows>,
     scenes: Vec<SceneObservations>,
 }
 
-/// Distance sweeps as their fit takes them.
+/// Distance sweeps, as they are fitted.
 pub(super) struct DistanceSweeps {
-    /// Of the frames as they were delivered.
+    /// Measured on the frames as delivered.
     pub(super) delivered: Vec<ReferenceDecays>,
-    /// The same sweeps of linear frames; all of them or none.
+    /// The same sweeps, measured on linear frames; all of them or none.
     pub(super) linear: Vec<ReferenceDecays>,
 }
 
 impl Measurements {
-    /// Adds a flat target at several distances, measured twice: as it was `delivered`, which the paper's cubic is fitted
-    /// to, and of `linear` frames where the response allows it, those of a
+    /// Adds a flat target at several distances, measured twice: on the frames as `delivered`, to which the paper's
+    /// cubic is fitted, and, where the response allows it, on the `linear` frames of a
     /// [`FrameLineariser`](crate::standardize::FrameLineariser).
     pub fn add_distance_sweep(&mut self, delivered: ReferenceDecays, linear: Option<ReferenceDecays>) {
         self.delivered.push(delivered);
         self.linear.extend(linear);
     }
 
-    /// Adds labelled targets in any pose, of linear frames where the response allows it; see
+    /// Adds labelled targets in any pose, measured on linear frames where the response allows it; see
     /// [`TargetSweep::of_linear_frames`](super::TargetSweep::of_linear_frames).
     pub fn add_target(&mut self, windows: TargetWindows) {
         self.targets.push(windows);
     }
 
-    /// Adds an ordinary recording, of linear frames where the response allows it.
+    /// Adds an ordinary recording, measured on linear frames where the response allows it.
     pub fn add_scene(&mut self, observations: SceneObservations) {
         self.scenes.push(observations);
     }
@@ -51,8 +51,8 @@ impl Measurements {
         self.delivered.is_empty() && self.targets.is_empty() && self.scenes.is_empty()
     }
 
-    /// The same, as a camera would show it that delivers no more than amplitude and distance: distance sweeps as they
-    /// were delivered.
+    /// The same without the linear measurements of distance sweeps, as for a camera that delivers only amplitude
+    /// and distance.
     #[must_use]
     pub fn of_delivered_amplitudes(self) -> Self {
         Self { linear: Vec::new(), ..self }

@@ -1,8 +1,17 @@
-//! From recordings to a [`Calibration`](crate::Calibration): measure recordings frame by frame, then fit the terms that
-//! they determine. [`ExposureFit`] tells the order of both.
+//! Measures recordings frame by frame and fits the terms of a [`Calibration`](crate::Calibration) to them. The
+//! order of the stages is at [`ExposureFit`].
 //!
-//! Each kind of recording has a room of its own: `exposure`, `distance`, `target` and `scene`, with how it is measured,
-//! what is fitted to it and its warnings. Targets and scenes share one model, [`joint`].
+//! Each kind of recording has a sweep, into which frames are pushed, and a result, to which the terms are fitted:
+//!
+//! | recording | measured by | result | terms |
+//! |---|---|---|---|
+//! | still scene at several integration times | [`ExposureSweep`] | [`ExposureCurve`] | `lut`, `response`, `noise` |
+//! | flat target at several distances | [`DistanceSweep`] | [`ReferenceDecays`] | `cubic`, `spline` |
+//! | labelled materials in any pose | [`TargetSweep`] | [`TargetWindows`] | `spline`, `profile`, `angle` |
+//! | ordinary recording | [`SceneSweep`] | [`SceneObservations`] | those of the above that are absent |
+//!
+//! Targets and scenes are fitted with one model of time, distance, place and angle, [`joint`]. What a recording
+//! does not determine becomes no term, but a [`FitWarning`].
 
 mod distance;
 mod error;

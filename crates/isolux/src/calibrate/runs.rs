@@ -9,14 +9,14 @@ pub(super) struct Runs {
     pub(super) decreased: bool,
 }
 
-/// Where a frame stands in its run.
+/// The place of a frame in its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// Among the frames to be skipped.
     Settling,
-    /// The first that counts.
+    /// The first frame that counts.
     First,
-    /// A later one.
+    /// A later frame that counts.
     Later,
 }
 

@@ -5,16 +5,16 @@ use crate::calibration::{REFERENCE_TIME_US, Reference};
 /// What the user decides about a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrateSettings {
-    /// Conditions under which every multiplier is 1.
+    /// The conditions under which every multiplier is 1.
     pub reference: Reference,
     /// Side of the central measurement window of a distance sweep, pixels; 20 in the paper.
     pub window_px: usize,
-    /// Frames dropped after each change of the integration time; 50 in the paper.
+    /// Number of frames that are left out after each change of the integration time; 50 in the paper.
     pub skip_frames: usize,
     /// Integration times to leave out, µs.
     pub exclude_time_us: Vec<f64>,
-    /// Modulation frequency of the sweeps, Hz, where it is known: the spline then allows for the aliased harmonic, and
-    /// the response of the raw bins repairs the distance.
+    /// Modulation frequency of the sweeps, Hz, where it is known. The spline then models the aliased harmonic, and
+    /// the response of the raw bins corrects the distance too.
     pub modulation_frequency_hz: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What every sweep keeps of its frames: their number, which of them settle, and which times are left out.
+//! What every sweep keeps about its frames: their number, which of them are settling, and which times are left out.
 
 use super::runs::{Place, Runs};
 use super::{CalibrateSettings, MeasureError};
@@ -15,7 +15,7 @@ pub(super) struct SweepFrames {
 }
 
 impl SweepFrames {
-    /// `recording` is the name that errors and the calibration give it.
+    /// `recording` is the name of the recording in errors and in the calibration.
     pub(super) fn new(recording: impl Into<String>, settings: &CalibrateSettings) -> Self {
         let runs = Runs::new(settings.skip_frames);
         Self { recording: recording.into(), settings: settings.clone(), runs, count: 0 }
@@ -32,8 +32,8 @@ impl SweepFrames {
         Ok(number)
     }
 
-    /// Where a frame of this time (µs; NaN where it is unknown) stands among those of its time; `None` where it does not
-    /// count: it settles, or its time is left out.
+    /// The place of a frame among those of its time (µs; NaN where it is unknown). `None` where it does not count:
+    /// the camera is settling, or the time is left out.
     pub(super) fn place(&mut self, time_us: f64) -> Option<Place> {
         let place = self.runs.push(time_us);
         Some(place).filter(|place| *place != Place::Settling && !self.settings.excludes(time_us))
@@ -51,7 +51,7 @@ impl SweepFrames {
     }
 }
 
-/// The one time of a frame, µs; an error message's words where there is none.
+/// The one time of a frame, µs; else a description of what was found.
 pub(super) fn single_time(time: &IntegrationTime) -> Result<f64, &'static str> {
     match time {
         IntegrationTime::PerFrame(time) => Ok(*time),
@@ -60,7 +60,7 @@ pub(super) fn single_time(time: &IntegrationTime) -> Result<f64, &'static str> {
     }
 }
 
-/// The one time of a frame, NaN where it is unknown.
+/// The one time of a frame, µs, NaN where it is unknown; else a description of what was found.
 pub(super) fn single_or_unknown_time(time: &IntegrationTime) -> Result<f64, &'static str> {
     match time {
         IntegrationTime::Unknown => Ok(f64::NAN),

@@ -1,4 +1,4 @@
-//! What the user should know of a fit, or record better: the sum of the warnings of all kinds of recordings.
+//! What the user should know about a fit, or record better: the warnings of all kinds of recordings.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use crate::advice::Advice;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FitWarning {
-    /// About exposure sweeps, the table and the response.
+    /// About exposure sweeps, the lookup table and the response.
     Exposure(ExposureWarning),
     /// About distance sweeps, the cubic and their spline.
     Distance(DistanceWarning),

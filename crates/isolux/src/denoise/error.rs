@@ -10,6 +10,6 @@ pub enum DenoiseError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// There is no distance.
-    #[error("distance found missing, a plane of metres expected: denoising needs it")]
+    #[error("no distance found, a plane of metres expected: denoising needs it")]
     DistanceMissing,
 }

@@ -1,11 +1,11 @@
 //! `plane`: in the 7×7 pixels around each, a plane is fitted to those that lie on the same surface.
 //!
-//! Which do, the [`super::wiener`] image says: where it departs from the plane by more than its own noise allows, a
-//! pixel counts less, and not at all beyond three standard deviations (Tukey's biweight). A first plane starts level
-//! and is fitted to that image; the second is fitted to the measured distances that lie on the first, weighted by
-//! `1/σ_d²`, and gives the answer. Measured distances do not choose their own company: that would let the noise
-//! decide. A plane, unlike a mean, bends no slanted surface, and uneven weights do not tilt it: the texture of the
-//! amplitude stays out.
+//! The [`super::wiener`] image decides which pixels lie on the same surface. A pixel where that image differs from
+//! the plane by more than its own noise counts less, and not at all beyond three standard deviations (Tukey's
+//! biweight). A first plane is fitted to that image; a second, which gives the result, is fitted to the measured
+//! distances that lie on the first, weighted by `1/σ_d²`. The measured distances do not decide themselves which of
+//! them count, because then their noise would. Unlike a mean, a plane does not distort slanted surfaces, and uneven
+//! weights do not tilt it, so that the texture of the amplitude has no effect.
 
 use super::image::Image;
 use super::wiener::Wiener;

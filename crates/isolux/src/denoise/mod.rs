@@ -1,9 +1,9 @@
-//! Less noise in the distance before it scales the amplitude.
+//! Denoises the distance before it scales the amplitude.
 //!
-//! A step like d² carries the distance's noise into the standardized amplitude. The rules here smooth the distance
-//! that scales, and nothing else: a frame's own distance stays as it is. Pixels without a measurement neither give
-//! nor take; the amplitude decides how much a distance is trusted, never where an edge is, so that its texture is
-//! not copied. Distances must be unwrapped.
+//! A step like d² carries the noise of the distance into the standardized amplitude. The rules here smooth the
+//! distances (m) that scale the amplitude; the frame's own distances are not changed. Pixels without a measurement
+//! are neither used nor changed. The amplitude determines the weight of a distance, but not where an edge is, so
+//! that its texture is not copied into the distances. Distances must be unwrapped.
 //!
 //! | rule | window | what it is for |
 //! |---|---|---|

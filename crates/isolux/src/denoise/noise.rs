@@ -1,8 +1,8 @@
 //! How noisy the distances of a frame are: `σ_d² = k / a²`.
 //!
-//! `σ_d = c / (4√2 π f) · σ_n / a` (error propagation through eq. 1). Frequency and bin noise are seldom known, and
-//! the distances tell the product of both themselves: the mixed second difference of 2×2 pixels cancels every slope and
-//! every edge along a row or column, and the median of its magnitude passes over the others.
+//! `σ_d = c / (4√2 π f) · σ_n / a` (error propagation through eq. 1). Frequency and bin noise are seldom known, so
+//! k is estimated from the distances: the mixed second difference of 2×2 pixels cancels every slope and every edge
+//! along a row or column, and the median of its magnitude ignores other edges.
 
 use super::image::Image;
 use crate::numerics::bit_histogram::BitHistogram;

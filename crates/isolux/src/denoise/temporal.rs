@@ -47,8 +47,8 @@ impl TemporalMean {
         (self.next, self.count) = (0, 0);
     }
 
-    /// Takes the next frame and writes into `out` the mean over it and those before it; pixels that are not valid in this frame keep what it has there. Allocates
-    /// only when the shape changes.
+    /// Takes the next frame and writes into `out` the mean distance (m) over it and the frames before it. A pixel
+    /// that is invalid in this frame gets the frame's own distance. Allocates only when the shape changes.
     ///
     /// # Errors
     /// [`DenoiseError`] when the frame has no distance, or its planes differ in shape.
@@ -72,7 +72,7 @@ impl TemporalMean {
         Ok(())
     }
 
-    /// Writes the share of the variance of the newest frame's distances that the mean leaves, `a² / Σa²`.
+    /// Writes the variance of the mean over that of the newest frame's own distance, `a² / Σa²`, 0..=1.
     pub fn variance_left(&self, out: &mut Plane<f32>) {
         out.reshape(self.shape, 1.0);
         let first = self.next + Self::FRAMES - self.count;

@@ -1,4 +1,4 @@
-//! An exponent, and what it says about an effect: still there, or gone.
+//! An exponent, and whether it shows that an effect is still present or has been corrected for.
 
 use serde::Serialize;
 
@@ -60,11 +60,11 @@ pub enum Evidence {
         /// The label.
         label: u8,
     },
-    /// Pixels of one vendor amplitude, taken for one reflectivity.
+    /// Pixels of one vendor amplitude, assumed to be of one reflectivity.
     VendorReflectivity,
 }
 
-/// How the amplitude goes with one quantity.
+/// How the amplitude depends on one quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// Exponent: d ln A / d ln t, d ln A / d ln d, or d ln A / d r².
@@ -79,21 +79,21 @@ pub struct Effect {
     pub observations: usize,
 }
 
-/// Is an effect of physics still in the amplitude?
+/// Whether a physical effect is still in the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// As the physics has it: uncorrected.
+    /// As physics predicts: not corrected.
     Present,
-    /// Gone: corrected.
+    /// Not in the amplitude: corrected.
     Removed,
     /// Between the two: partly corrected, or a gamma curve.
     Reduced,
-    /// More of it than physics knows: a curve steeper than linear.
+    /// More than physics predicts: a curve steeper than linear.
     Exaggerated,
     /// The other way round: corrected too far.
     Reversed,
-    /// The interval allows too much.
+    /// The interval is too wide to decide.
     Undetermined,
 }
 

@@ -1,4 +1,4 @@
-//! What the exponents mean, in words.
+//! The findings of a diagnosis, and their sentences.
 
 use std::fmt;
 
@@ -7,56 +7,57 @@ use serde::Serialize;
 use super::effect::{Evidence, State};
 use super::vendor::VendorFinding;
 
-/// One statement about the stream; its text is a sentence for a person.
+/// One statement about the recording; [`Display`](fmt::Display) gives a sentence.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "finding", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
-    /// t¹ is in it.
+    /// The amplitude grows with t¹: not corrected for the integration time.
     TimeRaw,
-    /// t is out of it.
+    /// The amplitude does not depend on t: corrected for the integration time.
     TimeCorrected,
-    /// Part of t is left: corrected in part, or a gamma curve; what distance says cannot decide.
+    /// The amplitude grows with less than t¹: corrected in part, or a gamma curve. The exponent of the distance
+    /// does not decide which.
     TimePartly {
-        /// What is left, the exponent.
+        /// The exponent.
         exponent: f64,
     },
-    /// More than t¹, or less than t⁰.
+    /// The amplitude grows faster than t¹, or falls with t.
     TimeOdd {
         /// The exponent.
         exponent: f64,
     },
-    /// d⁻² is in it.
+    /// The amplitude falls with d⁻²: not corrected for the distance.
     DistanceRaw {
-        /// Whose word it is that the material is one.
+        /// What shows that all compared pixels are of one material.
         evidence: Evidence,
     },
-    /// d is out of it.
+    /// The amplitude does not depend on d: the distance has been corrected for.
     DistanceCorrected {
-        /// Whose word it is that the material is one.
+        /// What shows that all compared pixels are of one material.
         evidence: Evidence,
     },
-    /// Part of d is left.
+    /// The amplitude falls with less than d⁻²: corrected in part, or a gamma curve.
     DistancePartly {
-        /// What is left, the exponent.
+        /// The exponent.
         exponent: f64,
-        /// Whose word it is that the material is one.
+        /// What shows that all compared pixels are of one material.
         evidence: Evidence,
     },
-    /// The exponent of d changes with the range: no power.
+    /// The exponent of d changes with the range: the law is not a power.
     DistanceCurve {
         /// The average exponent.
         exponent: f64,
-        /// Smallest exponent of a third of the pixels.
+        /// Smallest exponent of the thirds of the pixels.
         lowest: f64,
-        /// Largest.
+        /// Largest exponent of the thirds.
         highest: f64,
-        /// What the average alone would say.
+        /// The state that the average exponent alone would give.
         state: State,
-        /// Whose word it is that the material is one.
+        /// What shows that all compared pixels are of one material.
         evidence: Evidence,
     },
-    /// Steeper than d⁻², or rising.
+    /// The amplitude falls faster than d⁻², or grows with d.
     DistanceOdd {
         /// The exponent.
         exponent: f64,
@@ -65,7 +66,7 @@ pub enum Finding {
     Gamma {
         /// Its exponent.
         gamma: f64,
-        /// The evidence: phase samples, or exponents of t and d that shrink alike.
+        /// True when the phase samples show it; false when the exponents of t and d are reduced alike.
         from_phase_samples: bool,
     },
     /// The amplitude is eq. 1 of its phase samples, times a constant.
@@ -81,7 +82,7 @@ pub enum Finding {
         /// Exponent of t there.
         high_exponent: f64,
     },
-    /// Values pile up at the top.
+    /// Many pixels have exactly the largest value.
     Clipped {
         /// The value, DN.
         value_dn: f64,
@@ -128,12 +129,12 @@ pub(super) fn headline(findings: &[Finding]) -> String {
 }
 
 impl Finding {
-    /// True for what says whether the amplitude is raw or corrected; not for what else is known of it.
+    /// True for a finding about whether the amplitude is raw or corrected.
     fn is_about_corrections(&self) -> bool {
         !matches!(self, Self::Clipped { .. } | Self::Saturated { .. } | Self::Coarse { .. } | Self::Vendor(_))
     }
 
-    /// A few words, for those that the headline does not say otherwise.
+    /// A few words for the headline; `None` for findings that it states otherwise.
     fn short(&self) -> Option<String> {
         Some(match self {
             Self::TimeRaw

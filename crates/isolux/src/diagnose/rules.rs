@@ -19,7 +19,7 @@ const BEND: f64 = 0.1;
 /// Exponents of d that differ by more than this between ranges are no power.
 const CURVE: f64 = 0.7;
 
-/// Everything that the diagnosis allows to say.
+/// All findings that follow from the diagnosis.
 pub(super) fn findings(diagnosis: &Diagnosis) -> Vec<Finding> {
     let mut findings = Vec::new();
     let gamma = diagnosis.phase_samples.as_ref().ok().and_then(gamma_by_phase_samples);
@@ -55,7 +55,8 @@ fn gamma_by_phase_samples(scaling: &Scaling) -> Option<Finding> {
     bent.then_some(Finding::Gamma { gamma: gamma.value, from_phase_samples: true })
 }
 
-/// Said only where every interval is narrow enough; terms that did not vary cannot have been applied unevenly.
+/// `None` unless every interval is narrow enough. A quantity that did not vary cannot have been corrected for
+/// differently from pixel to pixel.
 pub(super) fn equals_phase_samples(scaling: &Scaling) -> Option<Finding> {
     let gamma = scaling.gamma.filter(|_| scaling.residual < EXPLAINED)?;
     let near =

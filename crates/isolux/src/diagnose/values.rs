@@ -1,4 +1,4 @@
-//! Which values the amplitude takes: pile-up at the top, coarse steps.
+//! The values that the amplitude takes: clipping at the largest one, coarse steps.
 
 use serde::Serialize;
 

@@ -14,21 +14,21 @@ const WIDEST: f64 = 3.0;
 /// A root mean square residual of ln(vendor/raw) beyond this: the law is not the vendor's.
 const LOOSE: f64 = 0.15;
 
-/// What the vendor does to the amplitude.
+/// How the vendor's amplitude depends on time, distance and place, relative to the raw amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VendorFinding {
-    /// Exponent of t in vendor/raw; `None` where it is not told.
+    /// Exponent of t in vendor/raw; `None` where it is not determined.
     pub time_exponent: Option<f64>,
-    /// `Present`: t is fully taken out; `Removed`: t plays no part.
+    /// `Present`: the vendor corrects fully for t; `Removed`: t has no effect.
     pub time: Option<State>,
-    /// Exponent of d in vendor/raw; `None` where it is not told.
+    /// Exponent of d in vendor/raw; `None` where it is not determined.
     pub distance_exponent: Option<f64>,
-    /// `Present`: d⁻² is fully taken out; `Removed`: d plays no part.
+    /// `Present`: the vendor corrects fully for d⁻²; `Removed`: d has no effect.
     pub distance: Option<State>,
-    /// Factor at r = 1 relative to the principal point; `None` where it is not told.
+    /// Factor at r = 1 relative to the principal point; `None` where it is not determined.
     pub corner_factor: Option<f64>,
-    /// True when that factor is 1 within its interval and 10 %; `None` where it is not told, or the interval is too
-    /// wide to say so.
+    /// True when that factor is 1 within its interval and 10 %; `None` where it is not determined or the interval
+    /// is too wide.
     pub even: Option<bool>,
     /// Root mean square residual of ln(vendor/raw).
     pub residual_rms: f64,

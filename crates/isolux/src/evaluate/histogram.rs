@@ -1,4 +1,4 @@
-//! W1 distance between log histograms: how far the image's grey values move with the integration time.
+//! W1 distance between log histograms: how far the values of the image shift with the integration time.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! A metric's value, or why there is none.
+//! The value of a figure, or the reason why there is none.
 
 use serde::Serialize;
 

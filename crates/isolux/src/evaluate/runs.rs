@@ -56,7 +56,7 @@ impl Runs {
     }
 }
 
-/// The integration times met so far: do they make a comparison over time possible?
+/// The integration times so far, and whether they allow a comparison over time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimesSeen {
     shortest_us: f32,

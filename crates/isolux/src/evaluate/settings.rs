@@ -1,4 +1,4 @@
-//! What the evaluation may be told.
+//! Settings of the evaluation.
 
 use serde::Serialize;
 

@@ -1,4 +1,5 @@
-//! Fixed-threshold masks over integration times: does one threshold serve every exposure?
+//! Fixed-threshold masks over integration times: whether one threshold selects the same pixels at every integration
+//! time.
 
 use serde::Serialize;
 

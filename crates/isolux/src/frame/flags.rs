@@ -6,8 +6,7 @@ bitflags! {
     /// Reasons to distrust a pixel; no bit set means that the value may be used.
     ///
     /// A standardized amplitude is NaN exactly where [`PixelFlags::INVALID`] is set. The other bits say why, or
-    /// warn of a value that is there but weaker than its neighbours. The bit positions are part of the
-    /// recording format and never change.
+    /// warn that a value is less reliable. The bit positions are part of the recording format and never change.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub struct PixelFlags: u16 {
         /// Nothing usable was measured, or a step could not be applied: the value is NaN.
@@ -23,7 +22,7 @@ bitflags! {
         /// The value was limited as a specular highlight.
         const SPECULAR = 1 << 5;
         /// The pixel lies outside the supported part of the illumination profile, or its surface is steeper than
-        /// the angle term has seen; the value goes on with the nearest factor that was.
+        /// the angle term was fitted on; the nearest known factor is used.
         const ILLUMINATION_OUT_OF_RANGE = 1 << 6;
     }
 }

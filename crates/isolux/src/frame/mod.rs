@@ -1,4 +1,4 @@
-//! One frame of a recording, as the corrections see it: images of several kinds, and what is known of them.
+//! One frame of a recording: its images and what is known about them.
 
 mod channels;
 mod flags;
@@ -24,7 +24,7 @@ pub struct Frame {
     pub distance_m: Option<Plane<f32>>,
     /// Integration time in µs.
     pub integration_time_us: IntegrationTime,
-    /// What is known of each pixel before any correction.
+    /// Flags of each pixel before any correction.
     pub flags: Plane<PixelFlags>,
     /// Raw bins A1..A4 in DN, in the paper's order.
     pub phase_samples: Option<[Plane<f32>; 4]>,
@@ -81,9 +81,9 @@ impl Frame {
         self.amplitude.bytes() + self.flags.bytes() + times + labels + images.sum::<usize>()
     }
 
-    /// Marks what is not a measurement: amplitudes that are not finite and positive become INVALID, and those
-    /// that reach `saturated_amplitude` (the camera's code, where it has one) SATURATED and INVALID. Flags that
-    /// the reader has already set are kept.
+    /// Flags pixels without a measurement. Amplitudes that are not finite and positive become INVALID; those that
+    /// reach `saturated_amplitude` (the camera's saturation code, DN) become SATURATED and INVALID. Existing flags
+    /// are kept.
     ///
     /// An amplitude of exactly 0 is what dead and over-saturated pixels deliver (all four bins equal, the
     /// paper's section 2.1), so it is no measurement either.

@@ -39,7 +39,7 @@ impl fmt::Display for Shape {
     }
 }
 
-/// Data whose length or shape is not what its place demands.
+/// Data of a wrong length or shape.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
@@ -98,7 +98,7 @@ impl<T: Copy> Plane<T> {
         Self { shape, values }
     }
 
-    /// Bytes that it holds.
+    /// Bytes that its values take.
     #[must_use]
     pub fn bytes(&self) -> usize {
         memory::bytes(&self.values)
@@ -134,7 +134,8 @@ impl<T: Copy> Plane<T> {
         self.values.fill(value);
     }
 
-    /// Gives the plane the wanted shape; keeps its memory when the shape is unchanged, and its values then.
+    /// Gives the plane the wanted shape, filled with `value`. When the shape is unchanged, memory and values are
+    /// kept.
     pub fn reshape(&mut self, shape: Shape, value: T) {
         if self.shape != shape {
             self.shape = shape;

@@ -1,4 +1,4 @@
-//! Numbers without images: statistics, fits and searches that know nothing of cameras.
+//! Numerical methods that do not depend on cameras: statistics, fits and searches.
 
 pub(crate) mod bit_histogram;
 pub(crate) mod bspline;

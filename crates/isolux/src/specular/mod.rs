@@ -1,4 +1,5 @@
-//! Specular highlights (section 2.3 of the paper): find a cutoff, limit what lies above it, flag it.
+//! Specular highlights (section 2.3 of the paper): a rule finds a cutoff in the standardized amplitudes (DN);
+//! values above it are limited and flagged.
 
 mod deviations;
 mod histogram;
@@ -53,7 +54,7 @@ impl SpecularRule {
         }
     }
 
-    /// The value above which pixels count as specular; `None` when the image has none that qualifies.
+    /// The value (DN) above which pixels count as specular; `None` when the rule finds none.
     pub(crate) fn cutoff(&self, values: &[f32], quantiles: &mut PositiveQuantiles) -> Option<f32> {
         match self {
             Self::Histogram(rule) => rule.cutoff(values, quantiles),

@@ -1,5 +1,5 @@
-//! The chain at work on one frame: every step resolves what it needs of the frame, then one loop over blocks of pixels
-//! does the arithmetic of all.
+//! The chain applied to one frame: each step first prepares what it needs of the frame, then one loop over blocks
+//! of pixels does the arithmetic of all steps.
 
 use std::ops::Range;
 
@@ -18,17 +18,17 @@ use crate::frame::Frame;
 use crate::frame::PixelFlags;
 use crate::terms::DistanceLaw;
 
-/// What a step that is left out gives the loop to read, from the cache.
+/// Multipliers of a step that is left out; small enough to stay in the cache.
 const ONES: [f32; BLOCK] = [1.0; BLOCK];
 
-/// One frame, as the loop reads it: one value for each pixel.
+/// One frame as the loop reads it: one value for each pixel.
 struct Inputs<'a> {
     /// Corrected for saturation where the chain does that.
     amplitude: &'a [f32],
     time: TimeGain<'a>,
-    /// The distances that scale; `None` leaves the distance in.
+    /// The distances that scale the amplitude, m; `None` when no step does.
     distance_m: Option<&'a [f32]>,
-    /// `None` leaves the angle in.
+    /// Cosines of the angle of incidence; `None` when no step needs them.
     cosines: Option<&'a [f32]>,
     sigma: Option<Predictor<'a>>,
 }
@@ -121,7 +121,7 @@ fn scale(plan: &Plan, inputs: &Inputs<'_>, out: &mut Standardized) {
     }
 }
 
-/// Profile and angle: factors on the multipliers of a block.
+/// Puts profile and angle on the multipliers of a block.
 fn scale_by_illumination(
     plan: &Plan,
     inputs: &Inputs<'_>,

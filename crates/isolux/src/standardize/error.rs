@@ -12,21 +12,21 @@ pub enum StandardizeError {
     /// Planes that do not fit together.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// The integration time that the plan needs is not there.
+    /// The integration time that the plan needs is missing.
     #[error(
-        "integration time found unknown (NaN or missing), a positive number of µs expected: the time step needs it"
+        "the integration time is unknown (NaN or missing), a positive number of µs expected: the time step needs it"
     )]
     TimeUnknown,
-    /// The distance that the plan needs is not there.
-    #[error("distance found missing, a plane of metres expected: the distance step needs it")]
+    /// The distance that the plan needs is missing.
+    #[error("no distance found, a plane of metres expected: the distance step needs it")]
     DistanceMissing,
-    /// The channel by which the response tells the fill of a pixel is not there.
+    /// The channel from which the response computes the fill of a pixel is missing.
     #[error("no {channel} found, one value for each pixel expected: the response's tier needs it")]
     FillMissing {
         /// The channel.
         channel: &'static str,
     },
-    /// The response's map is that of a scene of another shape.
+    /// The response's map was fitted on frames of another shape.
     #[error(
         "the frame is {found}, {expected} expected, the shape of the scene that the response's tier `pixel` was \
          fitted on: it holds for that scene alone"
@@ -37,7 +37,7 @@ pub enum StandardizeError {
         /// Shape of the map.
         expected: Shape,
     },
-    /// The frame is not of the format that the illumination profile holds for.
+    /// The illumination profile was fitted on frames of another shape.
     #[error(
         "a frame of {found} found, {expected} expected: the illumination profile holds for that format alone"
     )]
@@ -59,7 +59,7 @@ impl From<DenoiseError> for StandardizeError {
 }
 
 impl StandardizeError {
-    /// What can be done about it.
+    /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {

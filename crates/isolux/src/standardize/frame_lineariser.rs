@@ -1,4 +1,4 @@
-//! Whole frames corrected for saturation before something is fitted to them.
+//! Corrects whole frames for saturation before something is fitted to them.
 
 use super::error::StandardizeError;
 use super::steps::response::{Corrected, Repaired, SaturationCorrection};
@@ -7,8 +7,8 @@ use crate::frame::{Channels, Frame};
 use crate::frame::{Plane, Shape};
 use crate::terms::response::Response;
 
-/// Undoes each pixel's compression by its measured fill, as the response step does: what is fitted after it (a law over
-/// distance, a profile) then describes the light, not the full well.
+/// Corrects the saturation of each pixel by its measured fill, as the response step does. What is fitted to such
+/// frames (a law over distance, a profile) then describes the light and not the saturation.
 #[derive(Clone, Debug)]
 pub struct FrameLineariser {
     correction: SaturationCorrection,
@@ -16,8 +16,8 @@ pub struct FrameLineariser {
 }
 
 impl FrameLineariser {
-    /// By the raw bins or the intensity, whichever of them the response covers and the recording has, in this order.
-    /// `None` where neither is there: only a measured fill holds for any scene.
+    /// Uses the raw bins, else the intensity, if the response was fitted for that channel and the recording has it.
+    /// `None` when neither is available: only a measured fill is valid for any scene.
     #[must_use]
     pub fn new(response: &Response, available: Channels) -> Option<Self> {
         let has = |channel| available.contains(channel);
@@ -31,14 +31,14 @@ impl FrameLineariser {
         Some(Self { correction, corrected: Corrected::default() })
     }
 
-    /// The channels that it reads besides amplitude and distance.
+    /// The channels that are read besides amplitude and distance.
     #[must_use]
     pub fn channels(&self) -> Channels {
         self.correction.channels()
     }
 
-    /// Makes `frame` linear in place: the amplitude is corrected for saturation, and so is the distance where the
-    /// raw bins tell it. Pixels that nothing can correct become SATURATED and INVALID.
+    /// Makes `frame` linear in place: corrects the amplitude for saturation, and with the raw bins also the
+    /// distance. Pixels that cannot be corrected become SATURATED and INVALID.
     ///
     /// # Errors
     /// [`StandardizeError`] when the frame lacks the channel, or its planes differ in shape.

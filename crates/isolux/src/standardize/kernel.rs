@@ -10,9 +10,9 @@ pub(super) const BLOCK: usize = 1024;
 #[derive(Clone, Copy)]
 pub(super) struct Block<'a> {
     pub(super) amplitude: &'a [f32],
-    /// 1 everywhere where the distance is left in.
+    /// Distances, m; 1 everywhere when no step scales by the distance.
     pub(super) distance_m: &'a [f32],
-    /// Product of all multipliers but the distance's polynomial; NaN where one is not known.
+    /// Product of all multipliers except the distance's polynomial; NaN where one is unknown.
     pub(super) gain: &'a [f32],
 }
 
@@ -47,7 +47,7 @@ pub(super) fn pointwise(
     }
 }
 
-/// What [`tally`] counts: pixels with each of these flags.
+/// The flags that [`tally`] counts.
 pub(super) const TALLIES: [PixelFlags; 4] = [
     PixelFlags::INVALID,
     PixelFlags::DISTANCE_OUT_OF_RANGE,

@@ -1,11 +1,16 @@
 //! Merging a bracket: frames of a still scene at several integration times become one, each pixel weighted by the
 //! inverse of its predicted variance.
 //!
-//! INVALID pixels take no part, SATURATED ones only where a pixel is saturated in every frame of the bracket. A weight
-//! is the inverse mean variance of 3×3 pixels: that of one pixel depends on its own noise (a value that is too low looks
-//! less noisy, and one that a distance near 0 makes vanish has hardly a σ), and would pull the mean down. Where the
-//! frames of a pixel disagree by more than one chance in a thousand allows (something moved, or a term does not fit),
-//! the value remains their weighted mean, and its σ grows by the ratio of Birge: `√(χ²/(n − 1))`.
+//! INVALID pixels do not count. SATURATED pixels count only where a pixel is saturated in every frame of the
+//! bracket.
+//!
+//! A weight is the inverse of the mean variance over 3×3 pixels. The predicted variance of a single pixel depends
+//! on the pixel's own noise: a value that is too low looks less noisy, and a value near 0 (at a distance near 0)
+//! has a σ near 0. Single variances would therefore pull the mean down.
+//!
+//! The frames of a pixel may disagree by more than noise does once in a thousand times, because something moved or
+//! a term does not fit. The value is then still their weighted mean, and its σ is multiplied by Birge's ratio,
+//! `√(χ²/(n − 1))`.
 
 use super::standardized::{FrameSummary, Standardized};
 use super::standardizer::Standardizer;
@@ -16,11 +21,11 @@ use crate::memory::bytes;
 use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;
 
-/// Standard deviations of a normal law that one chance in a thousand is beyond.
+/// The 0.999 quantile of the standard normal distribution.
 const Z_999: f64 = 3.090_232_306_167_813;
 
-/// Collects the frames of a bracket, one after the other; [`Standardizer::bracket`] makes it. The result depends on
-/// the frames and their order alone.
+/// Collects the frames of a bracket, one after the other; created by [`Standardizer::bracket`]. The result depends
+/// only on the frames and their order.
 #[derive(Clone, Debug)]
 pub struct BracketMerge {
     specular: Option<SpecularRule>,
@@ -34,9 +39,9 @@ pub struct BracketMerge {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// Without a predicted standard deviation there are no weights.
+    /// The frame has no predicted standard deviation, from which the weights are computed.
     #[error(
-        "no predicted standard deviation found, one for each pixel expected: it tells how much a frame counts"
+        "no predicted standard deviation found, one for each pixel expected: the weight of a frame follows from it"
     )]
     NoSigma,
     /// Frames of one bracket that differ in shape.
@@ -44,7 +49,7 @@ pub enum MergeError {
     Shape(#[from] ShapeError),
 }
 
-/// One pixel of the frames so far; the mean by West's recursion (1979), which does not cancel.
+/// One pixel of the frames so far; the mean by West's recursion (1979), which avoids cancellation.
 #[derive(Clone, Copy, Debug, Default)]
 struct MergedPixel {
     weight: f64,
@@ -54,15 +59,15 @@ struct MergedPixel {
     /// Σ w² σ².
     variance: f64,
     count: u16,
-    /// Flags of those that count, those that all of them have, and those of the others.
+    /// Flags that any counting frame has, flags that all of them have, and flags of the frames that do not count.
     any: PixelFlags,
     all: PixelFlags,
     left_out: PixelFlags,
 }
 
 impl Standardizer {
-    /// For brackets: the chain that each of their frames goes through, which leaves highlights as they are, and what
-    /// merges them and limits highlights then.
+    /// Splits the chain for brackets: a chain for each frame, without the step for highlights, and a
+    /// [`BracketMerge`] that merges the standardized frames and then limits highlights.
     ///
     /// # Errors
     /// [`MergeError::NoSigma`] when the plan predicts no standard deviation.
@@ -81,7 +86,7 @@ impl BracketMerge {
         Self { specular, shape: Shape::new(0, 0), pixels: Vec::new(), variance: Vec::new(), quantiles }
     }
 
-    /// Bytes that it holds, known after the first frame.
+    /// Bytes that it has allocated; known after the first frame.
     #[must_use]
     pub fn bytes(&self) -> usize {
         bytes(&self.pixels) + bytes(&self.variance) + self.quantiles.bytes()
@@ -111,8 +116,9 @@ impl BracketMerge {
         Ok(())
     }
 
-    /// Ends the bracket and writes the merged frame; the next push begins another. A pixel is INVALID where it was in
-    /// every frame, LOW_SIGNAL where all that count are, and has the other flags of all that count.
+    /// Ends the bracket and writes the merged frame into `out`; the next push begins another bracket. A pixel is
+    /// INVALID where it was INVALID in every frame, and LOW_SIGNAL where it was in all frames that count. It has
+    /// every other flag of any frame that counts.
     pub fn finish(&mut self, out: &mut Standardized) {
         out.reshape(self.shape, true);
         self.pixels.resize(self.shape.pixels(), MergedPixel::default());
@@ -163,13 +169,13 @@ impl MergedPixel {
     }
 }
 
-/// χ² of `freedom` degrees of freedom that one chance in a thousand is beyond (Wilson and Hilferty 1931; within 4 %).
+/// The 0.999 quantile of χ² with `freedom` degrees of freedom (Wilson and Hilferty 1931; within 4 %).
 fn unlikely(freedom: f64) -> f64 {
     let ninth = 2.0 / (9.0 * freedom);
     freedom * (1.0 - ninth + Z_999 * ninth.sqrt()).powi(3)
 }
 
-/// Mean of σ² over the 3×3 pixels around each that have one; NaN where the pixel itself has none.
+/// Mean of σ² over those of the 3×3 pixels around each pixel that have a σ; NaN where the pixel itself has none.
 fn mean_variance(sigma: &[f32], shape: Shape, out: &mut [f32]) {
     let (height, width) = (shape.height, shape.width);
     for (index, out) in out.iter_mut().enumerate() {

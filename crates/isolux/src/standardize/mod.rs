@@ -1,9 +1,23 @@
 //! Standardizing frames: plan once, then apply to each frame without allocating.
 //!
 //! A [`Standardizer`] is planned from a [`Choice`] of steps, a calibration, and what is known of the recording
-//! ([`RecordingTraits`]). Its [`Stream`] takes frame after frame and gives back a [`Standardized`] each. Where several
-//! threads share the work, [`Stream::prepare`] takes the frames in order and [`Standardizer::apply`] does the
+//! ([`RecordingTraits`]). Its [`Stream`] takes one frame after the other and returns a [`Standardized`] for each. Where
+//! several threads share the work, [`Stream::prepare`] takes the frames in order and [`Standardizer::apply`] does the
 //! arithmetic, with a [`Workspace`] for each thread.
+//!
+//! The steps, in the order in which they are applied to the amplitude A (DN) of a pixel:
+//!
+//! | step | what it removes | how |
+//! |---|---|---|
+//! | time | integration time t, µs | table, `t_ref / t`, or saturation-corrected amplitude times `t_ref / t` |
+//! | denoise | noise of the distance | smooths the distances (m) that the next step reads |
+//! | distance | radial distance d, m | cubic, spline, `(d / d_ref)²`, or eq. 5 of the paper |
+//! | profile | illumination profile | divides by the gain of the pixel |
+//! | angle | angle of incidence θ | divides by `cos^k θ` |
+//! | sigma | | predicts the standard deviation (DN) of each value and removes the bias that the distance's noise causes |
+//! | specular | highlights | limits values above a cutoff (DN) |
+//!
+//! Frames of a bracket (a still scene at several integration times) are merged by [`BracketMerge`].
 
 mod apply;
 mod error;

@@ -1,4 +1,4 @@
-//! From the user's choice, the calibration and the recording's traits to the steps that will be applied.
+//! Decides the steps that will be applied, from the user's choice, the calibration and the recording's traits.
 
 use super::planner::Planner;
 use super::recording_traits::RecordingTraits;
@@ -16,7 +16,7 @@ use crate::specular::SpecularRule;
 use crate::terms::DistanceLaw;
 use crate::terms::profile::ProfileGains;
 
-/// Everything that depends on the calibration alone. A step that is `None` is left out.
+/// Everything that can be computed before the first frame. A step that is `None` is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Plan {
     pub(super) saturation: Option<SaturationCorrection>,
@@ -85,7 +85,7 @@ impl Plan {
     }
 }
 
-/// Says, above all other notes, that the steps so far are no calibration.
+/// Puts a note before all others: the planned steps are textbook physics and no calibration.
 fn note_textbook(planner: &mut Planner<'_>) {
     let physics = planner.steps.iter().filter(|step| step.effect != "denoise");
     let terms: Vec<&str> = physics.map(|step| step.term).collect();

@@ -1,4 +1,4 @@
-//! What the steps are planned from, and what they leave behind.
+//! What the steps are planned from, and the record of what was planned.
 
 use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
@@ -7,7 +7,7 @@ use crate::calibration::Calibration;
 use crate::choice::{Choice, Method};
 use crate::frame::Channels;
 
-/// Collects the plan while one step after the other adds to it.
+/// Collects the plan; each step adds to it in turn.
 pub(super) struct Planner<'a> {
     pub(super) choice: &'a Choice,
     pub(super) calibration: Option<&'a Calibration>,
@@ -25,13 +25,13 @@ impl<'a> Planner<'a> {
         Self { choice, calibration, traits, steps: Vec::new(), notes: Vec::new() }
     }
 
-    /// A step is required when it, or the method that consists of it, was asked for by name.
+    /// True when a step was asked for by name, or the method that requires it was.
     pub(super) fn is_required(&self, named: bool) -> bool {
         named || self.choice.method == Method::Paper
     }
 
-    /// Whether the recording has what a step needs. Where it has not, that is an error if the step is `required`, a
-    /// note if not.
+    /// Whether the recording has the channel that a step needs. A missing channel is an error if the step is
+    /// `required`, else a note.
     pub(super) fn has(
         &mut self,
         needed: Channels,
@@ -48,7 +48,7 @@ impl<'a> Planner<'a> {
         Ok(false)
     }
 
-    /// The error about a term that was asked for and is not there.
+    /// The error about a term that was asked for and is missing.
     pub(super) fn missing(&self, term: &'static str, fit_from: RecordingKind) -> PlanError {
         match self.calibration {
             Some(_) => PlanError::TermMissing { term, fit_from },

@@ -1,21 +1,22 @@
-//! What the frames before a frame contribute to it.
+//! What earlier frames contribute to a frame.
 
 use crate::frame::{Plane, Shape, ShapeError};
 
-/// Made by [`Stream::prepare`](super::Stream::prepare) in the order of the frames, taken by
-/// [`Standardizer::apply`](super::Standardizer::apply) in any order and thread. The default has no frames before it.
+/// What earlier frames contribute to a frame. [`Stream::prepare`](super::Stream::prepare) fills it in the order of
+/// the frames, [`Standardizer::apply`](super::Standardizer::apply) reads it in any order and thread. The default is
+/// that of a first frame.
 #[derive(Clone, Debug, Default)]
 pub struct Prepared {
-    /// Filled where the plan takes means over frames.
+    /// Present when the plan averages distances over frames.
     pub(super) mean: Option<MeanDistance>,
 }
 
-/// The distances over the last frames.
+/// The mean distance over the last frames.
 #[derive(Clone, Debug)]
 pub(super) struct MeanDistance {
     /// Metres.
     pub(super) distance_m: Plane<f32>,
-    /// Share of the variance of the frame's own distance that the mean leaves, 0..=1.
+    /// Variance of the mean over that of the frame's own distance, 0..=1.
     pub(super) variance_left: Plane<f32>,
 }
 
@@ -27,16 +28,16 @@ impl Default for MeanDistance {
 }
 
 impl Prepared {
-    /// Bytes that it holds.
+    /// Bytes that it has allocated.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.mean.as_ref().map_or(0, |mean| mean.distance_m.bytes() + mean.variance_left.bytes())
     }
 
-    /// The mean, for a frame of `shape`.
+    /// The mean distance, for a frame of `shape`.
     ///
     /// # Errors
-    /// [`ShapeError`] when it was made of frames of another shape.
+    /// [`ShapeError`] when it was made from frames of another shape.
     pub(super) fn mean(&self, shape: Shape) -> Result<Option<&MeanDistance>, ShapeError> {
         let Some(mean) = &self.mean else { return Ok(None) };
         mean.distance_m.expect_shape("mean distance", shape)?;

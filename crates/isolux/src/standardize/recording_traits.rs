@@ -1,24 +1,24 @@
-//! What a plan must know of the recording that it is for.
+//! What a plan must know about the recording.
 
 use crate::frame::Channels;
 use crate::frame::Intrinsics;
 use crate::frame::Shape;
 
-/// Facts about a recording. They are no choice: the recording has them or it has not.
+/// Facts about a recording that decide which steps are possible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordingTraits {
-    /// Channels that it has.
+    /// The channels that the recording has.
     pub channels: Channels,
-    /// Height and width of its frames, where they are known beforehand.
+    /// Height and width of its frames in pixels, where they are known before the first frame.
     pub shape: Option<Shape>,
-    /// Its intrinsics, which the angle step needs.
+    /// Its intrinsics, pixels; the angle step needs them.
     pub intrinsics: Option<Intrinsics>,
-    /// Its modulation frequency, Hz, for the prediction of sigma; otherwise the noise of the distances is estimated from
-    /// each frame.
+    /// Its modulation frequency, Hz, from which the prediction of sigma computes the noise of the distances.
+    /// `None`: the noise is estimated from each frame.
     pub modulation_frequency_hz: Option<f64>,
 }
 
-/// Of a recording of which nothing but its channels is known.
+/// The traits of a recording of which only the channels are known.
 impl From<Channels> for RecordingTraits {
     fn from(channels: Channels) -> Self {
         Self { channels, shape: None, intrinsics: None, modulation_frequency_hz: None }

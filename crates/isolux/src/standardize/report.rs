@@ -1,4 +1,4 @@
-//! What a plan has to say: the steps, what the user should know of them, and why a choice cannot be carried out.
+//! What a plan reports: its steps, notes for the user, and why a choice cannot be carried out.
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use crate::advice::{Advice, RecordingKind};
 use crate::choice::{DistanceStep, TimeStep};
 use crate::frame::Shape;
 
-/// One step of the chain, as the output's record tells it.
+/// One step of the chain, as it is recorded with the output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AppliedStep {
-    /// Which effect it takes out: `time`, `denoise`, `distance`, `profile`, `angle` or `specular`; `sigma` predicts what
-    /// is left.
+    /// The effect that the step removes: `time`, `denoise`, `distance`, `profile`, `angle` or `specular`; `sigma`
+    /// for the prediction of the noise that is left.
     pub effect: &'static str,
     /// Name of the term.
     pub term: &'static str,
@@ -18,43 +18,43 @@ pub struct AppliedStep {
     pub parameters: String,
 }
 
-/// Something that the user should know of the plan.
+/// Something that the user should know about the plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
-    /// No calibration: textbook physics, not this camera.
+    /// There is no calibration: the steps are textbook physics, not measured on this camera.
     Textbook {
         /// The terms that are used.
         terms: String,
     },
-    /// `best` goes without the step for the integration time, for which the calibration has no term.
+    /// `best` leaves out the step for the integration time, because the calibration has no term for it.
     NoTimeTerm,
-    /// `best` goes without the step for the distance, for which the calibration has no term.
+    /// `best` leaves out the step for the distance, because the calibration has no term for it.
     NoDistanceTerm,
     /// A step is left out because the recording lacks its channel.
     ChannelMissing {
-        /// The effect that stays in.
+        /// The effect that is not removed.
         effect: &'static str,
         /// The channel.
         channel: &'static str,
     },
     /// The distance is to be denoised, but no step scales by it.
     NothingToDenoise,
-    /// The noise of the distance cannot be computed from that of the amplitude.
+    /// The modulation frequency is unknown, so that the noise of the distance is estimated from each frame.
     FrequencyUnknown,
-    /// `best` goes without the profile, which holds for another image format.
+    /// `best` leaves out the profile, which was fitted on frames of another shape.
     ProfileFormat {
         /// Shape of the recording's frames.
         found: Shape,
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
-    /// The calibration knows no angle, so that Lambert's cosine stands in.
+    /// The calibration has no angle term; Lambert's cosine is used.
     Lambert,
 }
 
 impl Note {
-    /// What can be done about it.
+    /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
@@ -108,7 +108,7 @@ pub enum PlanError {
     TermMissing {
         /// The term.
         term: &'static str,
-        /// What it is fitted from.
+        /// The kind of recording that it is fitted from.
         fit_from: RecordingKind,
     },
     /// A term asked for by name needs a calibration.
@@ -116,7 +116,7 @@ pub enum PlanError {
     CalibrationMissing {
         /// The term.
         term: &'static str,
-        /// What it is fitted from.
+        /// The kind of recording that it is fitted from.
         fit_from: RecordingKind,
     },
     /// A step asked for by name needs a channel that the recording lacks.
@@ -127,10 +127,10 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
-    /// A prediction of the standard deviation without the noise of the amplitude.
+    /// The standard deviation was asked for, but the noise of the amplitude is unknown.
     #[error("`sigma` was asked for, but the noise of the amplitude is not known")]
     NoiseUnknown,
-    /// The profile asked for is that of another image format.
+    /// The profile was asked for, but it was fitted on frames of another shape.
     #[error(
         "`profile` was asked for, but it holds for images of {expected}, and the recording's are {found}"
     )]
@@ -140,7 +140,7 @@ pub enum PlanError {
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
-    /// No rays, no angles.
+    /// The angle was asked for, but the recording has no intrinsics, from which the rays are computed.
     #[error("`angle` was asked for, but the recording has no intrinsics")]
     IntrinsicsMissing,
     /// The calibration's own values are impossible.
@@ -149,7 +149,7 @@ pub enum PlanError {
 }
 
 impl PlanError {
-    /// What can be done about it.
+    /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {

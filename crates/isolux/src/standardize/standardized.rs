@@ -1,15 +1,15 @@
-//! A standardized frame, and what happened to it.
+//! A standardized frame, and counts of what happened to its pixels.
 
 use super::kernel::{BLOCK, TALLIES, tally};
 use crate::frame::PixelFlags;
 use crate::frame::{Plane, Shape};
 
-/// A standardized frame; reuse one for a whole recording.
+/// A standardized frame: planes of the frame's height × width. Reuse one for a whole recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standardized {
     /// Amplitude expected at the reference time and distance, DN; NaN exactly where INVALID is flagged.
     pub amplitude: Plane<f32>,
-    /// The frame's flags, with those of the correction.
+    /// The frame's flags, and those that the steps added.
     pub flags: Plane<PixelFlags>,
     /// Predicted standard deviation of each amplitude before highlights were limited, DN; NaN where INVALID is
     /// flagged or the noise is unknown. `None` where the plan predicts none.
@@ -18,20 +18,21 @@ pub struct Standardized {
     pub summary: FrameSummary,
 }
 
-/// What happened to one frame.
+/// Counts over the pixels of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameSummary {
-    /// Pixels with a value.
+    /// Pixels with a standardized value.
     pub valid: usize,
     /// All pixels.
     pub pixels: usize,
-    /// Measured pixels whose integration time is above the table's range, or unknown: refused.
+    /// Measured pixels whose integration time is unknown or above the table's range; they become INVALID.
     pub time_refused: usize,
-    /// Measured pixels whose integration time is below the table: continued as 1/t and flagged.
+    /// Measured pixels whose integration time is below the table's range; extrapolated as 1/t and flagged.
     pub time_extrapolated: usize,
-    /// Pixels whose distance is outside the fitted range: continued as d² and flagged.
+    /// Pixels whose distance is outside the fitted range; extrapolated as d² and flagged.
     pub distance_extrapolated: usize,
-    /// Pixels outside the support of the profile or steeper than the angle term has seen: continued and flagged.
+    /// Pixels outside the support of the profile, or steeper than the angle term was fitted on; extrapolated and
+    /// flagged.
     pub illumination_extrapolated: usize,
     /// Pixels limited as specular.
     pub specular: usize,
@@ -40,7 +41,7 @@ pub struct FrameSummary {
 }
 
 impl Standardized {
-    /// Memory for frames of `shape`.
+    /// An empty result for frames of `shape`: NaN, nothing flagged, no σ.
     #[must_use]
     pub fn new(shape: Shape) -> Self {
         Self {
@@ -51,13 +52,13 @@ impl Standardized {
         }
     }
 
-    /// Bytes that it holds.
+    /// Bytes that its planes have allocated.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.amplitude.bytes() + self.flags.bytes() + self.sigma.as_ref().map_or(0, Plane::bytes)
     }
 
-    /// Follows a frame of another shape; does not allocate when the shape is unchanged.
+    /// Takes the shape of a frame; does not allocate when it is unchanged.
     pub(super) fn reshape(&mut self, shape: Shape, with_sigma: bool) {
         self.amplitude.reshape(shape, f32::NAN);
         self.flags.reshape(shape, PixelFlags::empty());
@@ -71,7 +72,7 @@ impl Standardized {
 }
 
 impl FrameSummary {
-    /// Counts the flags of a frame; the counts of the time step and the cutoff are not among them.
+    /// Counts the flags of a frame. The counts of the time step and the cutoff are set elsewhere.
     pub(super) fn of(flags: &[PixelFlags]) -> Self {
         let mut totals = [0; TALLIES.len()];
         flags.chunks(BLOCK).for_each(|block| tally(block, &mut totals));

@@ -16,18 +16,21 @@ use crate::denoise::{DenoiseRule, TemporalMean};
 use crate::frame::{Channels, Frame};
 use crate::specular::SpecularRule;
 
-/// A chain of corrections, ready to apply to any frame of a recording. Cheap to clone, shareable between threads.
+/// A chain of corrections, ready to apply to any frame of a recording. It is cheap to clone and can be shared
+/// between threads.
 ///
-/// Frames go through [`Self::stream`], one after the other. Where several threads work on frames,
-/// [`Stream::prepare`](super::Stream::prepare) takes them in order and [`Self::apply`] does the rest anywhere.
+/// Frames are pushed into [`Self::stream`], one after the other. Where several threads share the work,
+/// [`Stream::prepare`](super::Stream::prepare) takes the frames in order, and [`Self::apply`] does the rest in any
+/// thread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standardizer {
     plan: Arc<Plan>,
 }
 
 impl Standardizer {
-    /// Plans the chain: the choice's steps, with the terms of `calibration`, for a recording with these traits. Its
-    /// [`Channels`] alone will do; the step `angle` needs its intrinsics, and the profile is for one image format.
+    /// Plans the chain: the steps of `choice`, with the terms of `calibration`, for a recording with these traits.
+    /// The recording's [`Channels`] alone are enough, except that the angle step needs its intrinsics. The profile
+    /// is valid for one shape of frames.
     ///
     /// # Errors
     /// [`PlanError`] when something asked for by name cannot be done.
@@ -45,7 +48,7 @@ impl Standardizer {
         &self.plan.steps
     }
 
-    /// What the user should know of the plan.
+    /// What the user should know about the plan.
     #[must_use]
     pub fn notes(&self) -> &[Note] {
         &self.plan.notes
@@ -57,21 +60,21 @@ impl Standardizer {
         self.plan.needed()
     }
 
-    /// True where [`Standardized::sigma`] is predicted.
+    /// True when the chain predicts [`Standardized::sigma`].
     #[must_use]
     pub fn predicts_sigma(&self) -> bool {
         self.plan.sigma.is_some()
     }
 
-    /// How many frames before a frame its result depends on: 0 unless the chain takes means over frames.
+    /// Number of earlier frames that the result of a frame depends on: 0 unless the chain averages over frames.
     #[must_use]
     pub fn frames_before(&self) -> usize {
         if self.plan.denoise == Some(DenoiseRule::Temporal) { TemporalMean::FRAMES - 1 } else { 0 }
     }
 
-    /// Standardizes one frame into `out`; the frame itself stays as it is. `prepared` is what
-    /// [`Stream::prepare`](super::Stream::prepare) made of the frame and those before it; the default standardizes the frame as the first of its stream. Allocates only
-    /// when the shape differs from that of the last frame.
+    /// Standardizes one frame into `out`; the frame is not changed. `prepared` holds what
+    /// [`Stream::prepare`](super::Stream::prepare) computed from the frame and those before it; the default treats
+    /// the frame as the first of its stream. Allocates only when the shape differs from that of the last frame.
     ///
     /// # Errors
     /// [`StandardizeError`] when the frame lacks what the plan needs, or its planes differ in shape.

@@ -1,4 +1,4 @@
-//! Frames that come one after the other: a recording, or a camera at work.
+//! Standardizing frames that come one after the other, from a recording or a live camera.
 
 use super::error::StandardizeError;
 use super::prepared::{MeanDistance, Prepared};
@@ -9,8 +9,8 @@ use crate::denoise::TemporalMean;
 use crate::frame::Frame;
 use crate::frame::Shape;
 
-/// The one stateful entry to standardizing: it owns the chain, what must be remembered of earlier frames, working
-/// memory and the last result.
+/// Standardizes a sequence of frames. It owns the chain, what must be remembered of earlier frames, working memory
+/// and the last result.
 ///
 /// ```
 /// use isolux::{Channels, Choice, Frame, IntegrationTime, Shape, Standardizer};
@@ -36,7 +36,7 @@ pub struct Stream {
 }
 
 impl Standardizer {
-    /// Begins a stream of frames.
+    /// Begins a stream of frames that share this chain.
     #[must_use]
     pub fn stream(&self) -> Stream {
         Stream {
@@ -56,7 +56,7 @@ impl Stream {
         &self.standardizer
     }
 
-    /// Standardizes the next frame. Allocates only when the shape differs from that of the last one.
+    /// Standardizes the next frame. Allocates only when the shape differs from that of the last frame.
     ///
     /// # Errors
     /// [`StandardizeError`] when the frame lacks what the plan needs, or its planes differ in shape.
@@ -69,12 +69,12 @@ impl Stream {
         Ok(&self.out)
     }
 
-    /// Takes the next frame, in order, and writes what the frames before it contribute to it: afterwards
-    /// [`Standardizer::apply`] may work on it in any order and thread.
+    /// Takes the next frame, in order, and writes into `out` what earlier frames contribute to it. Afterwards,
+    /// [`Standardizer::apply`] may work on the frame in any order and thread.
     ///
     /// # Errors
-    /// [`StandardizeError`] when the chain takes means over frames and this one has no distance, or its planes differ
-    /// in shape.
+    /// [`StandardizeError`] when the chain averages over frames and this frame has no distance, or its planes
+    /// differ in shape.
     pub fn prepare(&mut self, frame: &Frame, out: &mut Prepared) -> Result<(), StandardizeError> {
         let Some(history) = &mut self.history else {
             out.mean = None;
@@ -88,20 +88,20 @@ impl Stream {
         Ok(())
     }
 
-    /// The last frame that was pushed, standardized; without pixels before the first one.
+    /// The result of the last push; it has no pixels before the first push.
     #[must_use]
     pub fn last(&self) -> &Standardized {
         &self.out
     }
 
-    /// Forgets the frames so far: the next one is the first of another scene.
+    /// Forgets the frames so far. Call it when another scene begins.
     pub fn reset(&mut self) {
         if let Some(history) = &mut self.history {
             history.reset();
         }
     }
 
-    /// Bytes that it holds.
+    /// Bytes that it has allocated.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let history = self.history.as_ref().map_or(0, TemporalMean::bytes);

@@ -6,14 +6,14 @@ use crate::memory::bytes;
 use crate::numerics::quantile::PositiveQuantiles;
 use crate::surface::Incidence;
 
-/// Working memory of [`Standardizer::apply`](super::Standardizer::apply). Empty until it is used; reuse one for each
-/// thread: it allocates only when the shape of the frames changes.
+/// Working memory of [`Standardizer::apply`](super::Standardizer::apply). Use one for each thread: it is empty at
+/// first and allocates only when the shape of the frames changes.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(super) corrected: Corrected,
     /// Multipliers over integration time, where each pixel has its own.
     pub(super) gains: Vec<f32>,
-    /// Of each pixel, where the noise of the distance is estimated from the frame.
+    /// Signal-to-noise ratio of each pixel, where the noise of the distance is estimated from the frame.
     pub(super) signal_to_noise: Vec<f32>,
     pub(super) denoiser: Denoiser,
     pub(super) incidence: Incidence,
@@ -21,7 +21,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Bytes that it holds: what a frame at work costs besides the frame and its result, known after the first one.
+    /// Bytes that it has allocated: the memory that one frame needs besides itself and its result. Known after the
+    /// first frame.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.corrected.bytes()

@@ -1,11 +1,11 @@
 //! The plane around each pixel, fitted to the distances around it, and the angle at which the light meets it.
 //!
-//! On a plane, the inverse depth is an affine function of the image: `1/z = a x + b y + c`, with the ray (x, y, 1), and
-//! (a, b, c) is the normal. So a fit of 1/z is a linear one, without a bias from the slant. Each window holds 9×9
-//! samples; where the distances are noisy, they are farther apart. A window reaches across edges of depth, so the
-//! fit is robust: it starts in the window's inner half with what a surface through the middle pixel could hold at all,
-//! and closes in on the plane that the majority lies on (Tukey's biweight, the cutoff at three times the weighted
-//! root mean square, at best halved from round to round).
+//! On a plane, the inverse depth is an affine function of the image: `1/z = a x + b y + c`, with the ray (x, y, 1),
+//! and (a, b, c) is parallel to the normal. A fit of 1/z is therefore linear, without a bias from the slant. Each
+//! window holds 9×9 samples; where the distances are noisy, they are farther apart. A window reaches across edges
+//! of depth, so the fit is robust: it starts in the window's inner half with what a surface through the middle
+//! pixel could hold at all, and closes in on the plane that the majority lies on (Tukey's biweight, the cutoff at
+//! three times the weighted root mean square, at best halved from round to round).
 
 use crate::frame::{Intrinsics, Shape};
 use crate::numerics::plane_fit::{LocalPlane, PlaneMoments};
@@ -92,7 +92,7 @@ impl Field<'_> {
             if closest && round >= NEAR_ROUNDS && are_close(plane, before) {
                 break;
             }
-            // A plane that half of the window has told is less sure where the window widens.
+            // The plane of half the window is less certain in the whole window.
             let widens = if round + 1 == NEAR_ROUNDS { 1.5 } else { 1.0 };
             let closer = 3.0 * samples.root_mean_square() * widens;
             cutoff = closer.clamp(0.5 * cutoff, cutoff).max(LEAST_CUTOFF * middle);

@@ -1,8 +1,8 @@
-//! `angle`: what the angle of incidence leaves of the light, `cos^k θ` (beyond the paper); k = 1 is Lambert's law, the
-//! textbook step without a calibration.
+//! `angle`: the share `cos^k θ` of the light that remains at an angle of incidence θ (beyond the paper); k = 1 is
+//! Lambert's law, the textbook step without a calibration.
 //!
-//! The cosines come from planes fitted to the denoised distances. They are clamped at [`LEAST_COSINE`]: beyond, the
-//! distances' errors would be multiplied without end, and what is clamped is flagged.
+//! The cosines come from planes fitted to the denoised distances. They are clamped at [`LEAST_COSINE`], because
+//! below it the errors of the distances would be multiplied without limit. Clamped pixels are flagged.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub struct Angle {
     pub exponent: f64,
     /// Its predicted standard error.
     pub standard_error: f64,
-    /// Cosines that were seen, least and greatest. Below, the law goes on, down to 0.2, flagged.
+    /// Least and greatest cosine of the fit. Below, pixels are extrapolated, down to 0.2, and flagged.
     pub valid_cosine: [f64; 2],
     /// What it was fitted on.
     pub fitted_on: Vec<Source>,
@@ -37,7 +37,7 @@ pub struct Angle {
 impl Angle {
     /// Parameter version that this library writes.
     pub const VERSION: u32 = 1;
-    /// Beyond 16, a surface is a mirror, and there is nothing to be undone.
+    /// Beyond 16, a surface is a mirror, which cannot be corrected.
     const LARGEST_EXPONENT: f64 = 16.0;
 
     /// Refuses parameters that no fit can have written.

@@ -1,10 +1,10 @@
-//! A multiplier over distance, ready for the hot loop: a polynomial, and for laws that are none a table that
-//! multiplies it.
+//! A multiplier over distance in the form that the loop over pixels evaluates: a polynomial, times a table where
+//! the law is not a polynomial.
 
 use super::{DistanceGain, DistanceTable};
 
-/// Every distance law: `s(d) = P(d) t(d)`. The polynomial carries the range and goes on as d² outside, where the table
-/// is constant.
+/// A distance law, `s(d) = P(d) t(d)`, d in metres. The polynomial holds the valid range and continues as d²
+/// outside it, where the table is constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceLaw {
     /// P, evaluated by the loop itself.

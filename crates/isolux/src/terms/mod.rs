@@ -1,5 +1,19 @@
-//! The correction terms, one file or folder each: parameters, what they do, and how they are fitted. A term has one
-//! name, in code and in the calibration file.
+//! The correction terms. Each module holds the parameters of a term, the correction and the fit. A term has the
+//! same name in code, in the calibration file and on the command line. Distances d are radial, in m; integration
+//! times t in µs; amplitudes in DN; multipliers are dimensionless and 1 at the reference.
+//!
+//! | term | corrects | source |
+//! |---|---|---|
+//! | [`lut`] | integration time: a table | paper, section 2.1, eq. 4 |
+//! | [`response`] | saturation, before `t_ref / t` | paper, eq. 3; methods, section 2 |
+//! | [`linear`] | integration time: `t_ref / t` | paper, eq. 2 |
+//! | [`cubic`] | distance: a polynomial | paper, section 2.2 |
+//! | [`spline`] | distance: a smooth law around the inverse square | beyond the paper |
+//! | [`square`] | distance: `(d / d_ref)²` | textbook |
+//! | [`eq5`] | distance: `((2d)² + 1) / ((2 d_ref)² + 1)` | paper, eq. 5 |
+//! | [`profile`] | illumination profile over the image | beyond the paper |
+//! | [`angle`] | angle of incidence: `cos^−k θ` | beyond the paper; Lambert for k = 1 |
+//! | [`noise`] | nothing; it predicts the variance of an amplitude | methods, section 1 |
 
 pub mod angle;
 pub mod cubic;
@@ -47,16 +61,16 @@ pub struct Source {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitQuality {
-    /// Points that the fit rests on: integration times of a LUT, positions of a decay.
+    /// Number of fitted points: integration times of a table, positions of a decay.
     pub points: usize,
     /// Root mean square of the relative error that the term leaves on these points, dimensionless.
     pub residual: f64,
-    /// The same on points that were kept out of the fit in turn; absent where too few points are there.
+    /// The same on points that were left out of the fit in turn; absent where there are too few points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held_out_residual: Option<f64>,
 }
 
-/// Multipliers beyond these limits turn any amplitude into nothing or infinity; no fit gives them.
+/// Multipliers that a fit may have. Beyond these limits, any amplitude would become 0 or infinite.
 pub(crate) const MULTIPLIER_LIMITS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// Root mean square of `values`; `None` when there are none.

@@ -1,4 +1,4 @@
-//! `noise`: the variance of an amplitude, from what is known of its light.
+//! `noise`: predicts the variance of an amplitude (DN²) from its light.
 //!
 //! A bin that holds O electrons has the variance `O + σ_r² + g²/12` (shot, read and quantization noise), and the
 //! amplitude of eq. 1 half of it (methods, section 1). In DN that is a constant plus a multiple of the intensity. Where
@@ -38,13 +38,13 @@ pub struct IntensityNoise {
     pub shot_variance_dn2_per_dn: f64,
 }
 
-/// What is known of a camera's noise.
+/// The noise of a camera's amplitudes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NoiseModel {
     /// For frames without intensity.
     pub by_amplitude: AmplitudeNoise,
-    /// For frames with intensity; otherwise they are taken as frames without.
+    /// For frames with intensity; `None` uses `by_amplitude` for them too.
     pub by_intensity: Option<IntensityNoise>,
 }
 
@@ -54,8 +54,7 @@ pub struct NoiseModel {
 pub struct Noise {
     /// Version of this term's parameters.
     pub version: u32,
-    /// For frames without intensity. It holds for scenes whose share of ambient light is that of the scene it was
-    /// fitted on.
+    /// For frames without intensity; valid for scenes with the share of ambient light of the fitted scene.
     pub by_amplitude: AmplitudeNoise,
     /// For frames with intensity; absent where the sweep had none.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -28,7 +28,7 @@ impl<S: ChannelSource> Assembled<S> {
     /// Asks the source what it holds and checks that this makes one recording. Reads no frame.
     ///
     /// # Errors
-    /// [`RecordingError::MissingAmplitude`] where no channel tells the shape of the frames;
+    /// [`RecordingError::MissingAmplitude`] where no channel determines the shape of the frames;
     /// [`RecordingError::Content`] for channels that do not fit it; [`RecordingError::Info`] for a description that
     /// contradicts the channels.
     pub fn new(source: S) -> Result<Self, RecordingError> {

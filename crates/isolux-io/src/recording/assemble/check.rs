@@ -1,4 +1,4 @@
-//! Do the channels make one recording, and what can be read from it?
+//! Checks that the channels make one recording, and finds out what can be read from it.
 
 use std::path::Path;
 
@@ -45,7 +45,7 @@ pub(super) fn check(description: &SourceDescription) -> Result<Layout, Recording
     Ok(Layout { metadata, places: Places::of(names) })
 }
 
-/// The shape of the frames, from the channel that tells it.
+/// The shape of the frames, from the most important channel that has one.
 fn shape(description: &SourceDescription, leading: usize) -> Result<Shape, RecordingError> {
     let channel = &description.channels[leading];
     let kind = FrameDims::of(&channel.name);
@@ -76,7 +76,7 @@ fn check_channel(channel: &StoredChannel, shape: Shape) -> Result<(), RecordingE
     Ok(())
 }
 
-/// Checks what is said of the recording against the channels that are stored.
+/// Checks the description of the recording against the stored channels.
 fn check_info(info: &RecordingInfo, path: &Path, stored: Channels) -> Result<(), RecordingError> {
     let error = |field: &str, found: &str, expected: &str| {
         Err(RecordingError::Info {

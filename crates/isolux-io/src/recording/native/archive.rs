@@ -9,7 +9,7 @@ use super::channel::ArrayFile;
 use super::stream::{Packing, Section};
 use crate::error::RecordingError;
 
-/// Deflate codes at most 258 bytes in 2 bits, so no honest member grows by more than this.
+/// Deflate codes at most 258 bytes in 2 bits, so that no undamaged member grows by more than this.
 const MOST_DEFLATE_GROWTH: u64 = 1032;
 
 /// Opens every array of an archive and reads its header. Members in folders are left alone.

@@ -127,7 +127,7 @@ impl Channel {
     }
 }
 
-/// Tells damaged data from a system that refuses.
+/// Distinguishes damaged data from a refusal of the operating system.
 fn read_error(path: &Path, source: io::Error) -> RecordingError {
     match source.kind() {
         io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::UnexpectedEof => {

@@ -10,8 +10,8 @@ use crate::recording::channels::{self, FrameDims};
 
 const ADD_DIMENSION: &str = "add the first dimension: numpy.save(file, array[numpy.newaxis])";
 
-/// Checks that the arrays are of one number of frames, each with the dimensions that its name demands; tells the
-/// number of frames.
+/// Checks that all arrays have the same number of frames, each with the dimensions that its name demands. Returns
+/// the number of frames.
 pub(super) fn check(path: &Path, arrays: &[ArrayFile]) -> Result<usize, RecordingError> {
     let arrays: Vec<_> = arrays
         .iter()

@@ -13,7 +13,7 @@ const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// A plain array's header is below 200 bytes; NumPy itself refuses to parse more than 10 000.
 const LONGEST_HEADER_BYTES: usize = 1 << 16;
 
-/// What a header says of the array behind it.
+/// The array that a header describes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NpyHeader {
     pub(crate) element: ElementType,

@@ -2,7 +2,7 @@
 
 use super::header_error::{HeaderError, unlike};
 
-/// A cursor over a Python literal; knows no more of the language than headers use, and does not recurse.
+/// A cursor over a Python literal. It parses only what headers use, and does not recurse.
 pub(super) struct Literal<'a> {
     rest: &'a str,
 }

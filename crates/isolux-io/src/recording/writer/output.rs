@@ -76,7 +76,7 @@ fn folder_beside(path: &Path) -> io::Result<TempDir> {
     prefix.push(path.file_name().unwrap_or_default());
     prefix.push(".partial-");
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // Asked first: that the folder is not there should not be told of a hidden name in it.
+    // Checked first, so that the error about a missing folder does not name a hidden file in it.
     fs::metadata(folder)?;
     tempfile::Builder::new().prefix(&prefix).tempdir_in(folder)
 }
@@ -134,7 +134,7 @@ fn replace(folder: &Path, path: &Path) -> Result<(), RecordingError> {
     fs::rename(path, &old).map_err(RecordingError::io("replace", path))?;
     if let Err(error) = fs::rename(folder, path) {
         if fs::rename(&old, path).is_err() {
-            // Whatever is the matter here, the old recording is not removed with the folder that it lies in.
+            // If this fails, the old recording must not be removed with the folder that it is in.
             let _ = aside.keep();
         }
         return Err(create()(error));

@@ -1,4 +1,4 @@
-//! What a writer is told of a channel.
+//! The description of a channel that is to be written.
 
 use std::path::Path;
 

@@ -1,14 +1,14 @@
-//! What the central window of one frame of a distance sweep says.
+//! Measures the central window of one frame of a distance sweep.
 
 use crate::frame::{Frame, Window};
 use crate::numerics::differences;
 
 /// Frames with more invalid pixels in the window than this share are left out.
 const INVALID_SHARE: f64 = 0.05;
-/// A spread is a tilt beyond this many standard errors.
+/// A spread of more than this many standard errors is a tilt.
 const STANDARD_ERRORS: f64 = 8.0;
 
-/// One frame's window.
+/// The measurement of one frame's window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measurement {
     /// Mean distance.
@@ -53,7 +53,7 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
     }
     let mean = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>() / count as f64;
     let deviation = |values: &[f64]| {
-        // Noise that cannot be told is no reason to trust.
+        // Where the noise cannot be measured, the distance counts as unreliable.
         differences::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
     };
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));

@@ -1,4 +1,4 @@
-//! From measured frames to positions of the target, and from positions to the decay of one integration time.
+//! Groups measured frames into positions of the target, and positions into the decay of one integration time.
 
 use super::DistanceWarning;
 use super::centre::Measurement;
@@ -9,12 +9,12 @@ const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
 /// Consecutive frames within this distance of the first belong to one position, or within
 /// [`POSITION_STANDARD_ERRORS`] where the distance is noisy.
 const POSITION_TOLERANCE_M: f64 = 0.005;
-/// Two means of one position differ by more once in 15 000 times.
+/// Two means of one position differ by more than this many standard errors once in 15 000 times.
 const POSITION_STANDARD_ERRORS: f64 = 4.0;
 /// The window's mean distance may scatter by this many standard errors before the target counts as moving.
 const STANDARD_ERRORS: f64 = 8.0;
-/// A decay of which fewer frames than this share have a reliable distance is left out as a whole, like the
-/// paper's 0.2 ms: what is left of it is the lucky part of noise.
+/// A decay is left out as a whole, like the paper's 0.2 ms, if a smaller share of its frames has a reliable
+/// distance: the remaining distances are then selected by noise.
 const LEAST_RELIABLE_SHARE: f64 = 1.0 / 3.0;
 
 /// What was measured at one integration time.
@@ -25,7 +25,7 @@ pub(super) struct Positions {
     pub(super) unreliable: usize,
 }
 
-/// Frames of one place of the target.
+/// Frames of one position of the target.
 #[derive(Clone, Debug)]
 struct Position {
     first_frame: usize,
@@ -108,7 +108,7 @@ impl Position {
         DecayPoint { distance_m: self.mean(|m| m.distance_m), amplitude_dn: self.mean(|m| m.amplitude_dn) }
     }
 
-    /// A range of means that noise does not explain.
+    /// A warning if the means differ by more than noise explains.
     fn moved(&self, recording: &str) -> Option<DistanceWarning> {
         let distances = || self.measurements.iter().map(|m| m.distance_m);
         let range_m =

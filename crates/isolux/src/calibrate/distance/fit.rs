@@ -1,4 +1,4 @@
-//! From reference decays to the terms `cubic` and `spline`.
+//! Fits the terms `cubic` and `spline` to reference decays.
 
 use super::{DistanceWarning, ReferenceDecays};
 use crate::calibrate::CalibrateSettings;
@@ -7,20 +7,20 @@ use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
 use crate::terms::spline::SplineUse;
 use crate::terms::{Cubic, Source, Spline};
 
-/// A decay with fewer positions follows its noise.
+/// With fewer positions, a fit follows the noise of the decay.
 const ENOUGH_POSITIONS: usize = 8;
-/// A decay with more outliers than this share says something else than the others.
+/// A decay with a larger share of outliers contradicts the others.
 const MANY_OUTLIERS: f64 = 1.0 / 3.0;
 
 /// What the fit found.
 pub(in crate::calibrate) struct DistanceFit {
     pub(in crate::calibrate) decays: Vec<(Decay, DecayUse)>,
-    /// Of the decays that the spline was fitted on; empty where there is none.
+    /// How the spline used each of its decays; empty without a spline.
     pub(in crate::calibrate) spline_uses: Vec<SplineUse>,
     pub(in crate::calibrate) warnings: Vec<DistanceWarning>,
 }
 
-/// Several sweeps together.
+/// The decays, sources and warnings of several sweeps.
 struct Pooled {
     sources: Vec<Source>,
     decays: Vec<Decay>,
@@ -39,12 +39,12 @@ impl Pooled {
     }
 }
 
-/// Fits cubic and spline to the same sweeps into `calibration`: the cubic to those of frames as they were delivered, the
-/// spline to those of `linear` frames where there are any. A spline that cannot be fitted is a warning: the cubic is
-/// there.
+/// Fits cubic and spline and writes them into `calibration`: the cubic to the frames as delivered, the spline to
+/// `linear` frames where there are any. A spline that cannot be fitted is only a warning, because there is the
+/// cubic.
 ///
 /// # Errors
-/// Why there is no cubic, and what was found before.
+/// Why there is no cubic, with the warnings so far.
 pub(in crate::calibrate) fn fit(
     settings: &CalibrateSettings,
     delivered: Vec<ReferenceDecays>,
@@ -59,7 +59,7 @@ pub(in crate::calibrate) fn fit(
     calibration.terms.cubic = Some(cubic.with_origin(sources.clone(), words(&warnings)));
     let linear = Pooled::of(linear);
     for warning in linear.warnings {
-        // Most things are odd about both.
+        // Most warnings hold for both measurements.
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }

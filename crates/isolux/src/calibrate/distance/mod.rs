@@ -1,4 +1,4 @@
-//! Distance sweeps: a flat target at several distances. They tell the cubic and the spline over distance.
+//! Distance sweeps: recordings of a flat target at several distances, to which cubic and spline are fitted.
 
 mod centre;
 mod decay;

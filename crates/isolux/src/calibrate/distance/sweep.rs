@@ -1,4 +1,4 @@
-//! Measuring a distance sweep: mean amplitude and mean distance in the central window, frame by frame.
+//! Measures a distance sweep: mean amplitude (DN) and mean distance (m) in the central window, frame by frame.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::frame::Frame;
 use crate::terms::Source;
 use crate::terms::cubic::Decay;
 
-/// A distance that changes by more than this share across the window is a tilted target.
+/// The target is tilted if the distance changes by more than this share across the window.
 const TILT_SHARE: f64 = 0.02;
 
 /// A flat target at several distances and integration times, measured frame by frame.
@@ -34,19 +34,19 @@ struct Widest {
     spread_m: f64,
 }
 
-/// What a distance sweep says: one decay per integration time.
+/// The result of a distance sweep: one decay per integration time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceDecays {
     /// The recording.
     pub source: Source,
-    /// Decays in the order of time, over-saturated positions and weak decays left out.
+    /// Decays by increasing time, without over-saturated positions and weak decays.
     pub decays: Vec<Decay>,
-    /// What was left out, and what is odd about the recording.
+    /// What was left out, and what the recording lacks.
     pub warnings: Vec<DistanceWarning>,
 }
 
 impl DistanceSweep {
-    /// Starts a sweep; `recording` is the name that errors and the calibration give it.
+    /// Starts a sweep; `recording` is its name in errors and in the calibration.
     #[must_use]
     pub fn new(recording: impl Into<String>, settings: &CalibrateSettings) -> Self {
         Self {
@@ -61,7 +61,7 @@ impl DistanceSweep {
     /// Measures the next frame. Its integration time may be unknown, but not a map.
     ///
     /// # Errors
-    /// [`MeasureError`] when the frame has no distance or planes that do not fit.
+    /// [`MeasureError`] when the frame has no distance, a map of times, or planes of different shapes.
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let time_us = single_or_unknown_time(&frame.integration_time_us)

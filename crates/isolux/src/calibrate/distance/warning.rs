@@ -1,11 +1,11 @@
-//! What is odd about a distance sweep, or the laws that are fitted on it.
+//! Warnings about distance sweeps and the laws that are fitted to them.
 
 use std::fmt;
 
 use crate::advice::Advice;
 use crate::terms::spline::SplineError;
 
-/// One finding about a distance sweep, with its numbers.
+/// A warning about a distance sweep, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DistanceWarning {
@@ -72,24 +72,24 @@ pub enum DistanceWarning {
         /// Range of the mean distances, m.
         range_m: f64,
     },
-    /// Few positions.
+    /// A decay with few positions.
     TooFewDistances {
         /// Integration time, µs.
         integration_time_us: Option<f64>,
         /// Number found.
         found: usize,
     },
-    /// A decay that could not be brought to the common scale.
+    /// A decay that could not be scaled onto the others.
     NoOverlap {
         /// Integration time, µs.
         integration_time_us: Option<f64>,
     },
-    /// No spline beside the cubic.
+    /// The spline could not be fitted; the cubic was.
     NoSpline {
         /// Why.
         reason: SplineError,
     },
-    /// Many positions of a decay that contradict those of the others.
+    /// A decay of which many positions contradict the others.
     Outliers {
         /// Integration time, µs.
         integration_time_us: Option<f64>,

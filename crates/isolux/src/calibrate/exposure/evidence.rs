@@ -1,24 +1,25 @@
-//! What an exposure sweep offers for the response: means of every pixel at each time, and of some pixels all channels.
+//! What the response is fitted to: the mean amplitude of every pixel at each time, and all channels of a sample of
+//! pixels.
 
 use crate::frame::{Frame, PixelFlags, Shape};
 use crate::terms::response::{AmplitudeStack, PixelMeans, PixelSeries};
 
-/// The evidence of one still scene.
+/// What an exposure sweep measured for the fit of the response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseEvidence {
-    /// Mean amplitudes of all pixels, NaN where one was invalid or saturated in any frame. Of a long sweep every
-    /// second time, or fewer, as memory allows.
+    /// Mean amplitude of each pixel at each time, DN; NaN where the pixel was invalid or saturated in any frame. A
+    /// long sweep keeps every second time, or fewer, to limit the memory.
     pub stack: AmplitudeStack,
-    /// Everything that pixels spread over the image delivered.
+    /// All channels of some pixels, spread over the image.
     pub pixels: Vec<PixelSeries>,
 }
 
-/// Amplitudes that the stack may hold, 64 MiB; while it grows, its memory is three times that for a moment.
+/// Largest number of amplitudes in the stack, 64 MiB. While it grows, it takes three times that for a moment.
 const STACK_VALUES: usize = 16 << 20;
-/// Pixels of which all channels are kept.
+/// Number of pixels of which all channels are kept.
 const SAMPLED_PIXELS: usize = 256;
 
-/// Collects the evidence frame by frame. A run of frames of one time is one image.
+/// Collects [`ResponseEvidence`] frame by frame. The frames of a run of one time are averaged into one image.
 #[derive(Clone, Debug)]
 pub(super) struct Collector {
     stack: AmplitudeStack,
@@ -29,12 +30,12 @@ pub(super) struct Collector {
     run: Option<Run>,
 }
 
-/// Sums over the frames of the run at hand.
+/// Sums over the frames of the current run.
 #[derive(Clone, Debug)]
 struct Run {
     integration_time_us: f64,
     frames: f64,
-    /// NaN once a frame had no value.
+    /// NaN after a frame without a value.
     amplitudes: Vec<f64>,
     sampled: Vec<PixelMeans>,
 }
@@ -51,7 +52,7 @@ impl Collector {
         if first || self.run.as_ref().is_none_or(|run| run.amplitudes.len() != pixels) {
             self.close_run();
             if self.stack.shape() != frame.shape() {
-                // A recording's frames are of one shape; a core user's need not be.
+                // The frames of a recording have one shape, those of other callers need not.
                 self.stack = AmplitudeStack::new(frame.shape());
                 self.pixels = vec![PixelSeries::new(); sampled(pixels).count()];
             }
@@ -116,7 +117,7 @@ impl Run {
         let pixels = frame.shape().pixels();
         for (sums, index) in self.sampled.iter_mut().zip(sampled(pixels)) {
             let flags = frame.flags.values()[index];
-            // A code is no amplitude, but the 0 of a collapsed pixel is one.
+            // A saturation code is no amplitude, but the 0 of an over-saturated pixel is.
             let code = flags.contains(unusable);
             let amplitude = frame.amplitude.values()[index];
             sums.amplitude_dn += if code { f64::NAN } else { f64::from(amplitude) };
@@ -130,7 +131,7 @@ impl Run {
     }
 }
 
-/// Indices of the sampled pixels: evenly spread, and by a step that no usual image width is a multiple of.
+/// Indices of the sampled pixels: evenly spread, with a step of which no usual image width is a multiple.
 fn sampled(pixels: usize) -> impl Iterator<Item = usize> {
     let step = (pixels / SAMPLED_PIXELS).max(1) | 1;
     (step / 2..pixels).step_by(step)

@@ -1,4 +1,4 @@
-//! From exposure sweeps to the terms `lut`, `response` and `noise`, and the noise floor.
+//! Fits the terms `lut`, `response` and `noise`, and the noise floor, to exposure sweeps.
 
 use super::tiers::{fit_response, sources};
 use super::{ExposureCurve, ExposureWarning, NoiseCells};
@@ -7,18 +7,18 @@ use crate::calibration::Calibration;
 use crate::terms::lut::{LutAnswer, LutError, RelativeSample};
 use crate::terms::{Lut, root_mean_square};
 
-/// Why the sweeps give no table.
+/// Why no table can be fitted to the sweeps.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::calibrate) struct TableError {
     /// The recording.
     pub(in crate::calibrate) recording: String,
     /// Why.
     pub(in crate::calibrate) source: LutError,
-    /// What was found before.
+    /// The warnings so far.
     pub(in crate::calibrate) warnings: Vec<ExposureWarning>,
 }
 
-/// Fits every term that the sweeps determine into `calibration`; at least one sweep.
+/// Fits every term that the sweeps (at least one) determine, and writes it into `calibration`.
 pub(in crate::calibrate) fn fit(
     settings: &CalibrateSettings,
     curves: &[ExposureCurve],
@@ -31,14 +31,14 @@ pub(in crate::calibrate) fn fit(
     calibration.terms.response = response;
     let floors = curves.iter().filter_map(|curve| curve.noise_floor);
     calibration.noise_floor = floors.min_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
-    // A wall's texture would pass for noise.
+    // Between neighbouring pixels, the texture of the scene would count as noise.
     let repeated = curves.iter().map(|curve| &curve.noise).filter(|noise| !noise.spatial);
     calibration.terms.noise = NoiseCells::merged(repeated).fit(sources(curves));
     Ok(warnings)
 }
 
-/// One table per sweep, then their geometric mean. Sweeps at unlike walls differ by a factor, which the normalization
-/// at the reference time takes out, and in their compression, which shows in the residual.
+/// Fits one table per sweep and takes their geometric mean. Sweeps of different scenes differ by a factor, which
+/// the normalization at the reference time removes, and in their saturation, which shows in the residual.
 fn fit_lut(
     settings: &CalibrateSettings,
     curves: &[ExposureCurve],
@@ -64,8 +64,8 @@ fn fit_lut(
     Ok((lut.with_origin(sources(curves), words), warnings))
 }
 
-/// Mean curve of several tables, 1 at the reference, at all their times that every one of them covers. Each is
-/// interpolated there, so that sweeps over unlike times do not take turns.
+/// Mean curve of several tables, 1 at the reference, at all of their times that every table covers. All tables are
+/// interpolated at each of these times, so that the mean is always over all sweeps.
 fn mean_curve(tables: &[Lut]) -> Vec<RelativeSample> {
     let mut times: Vec<f64> = tables.iter().flat_map(|lut| lut.integration_time_us.iter().copied()).collect();
     times.sort_by(f64::total_cmp);

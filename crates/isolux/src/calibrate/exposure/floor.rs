@@ -17,12 +17,12 @@ pub(super) struct FloorWatch {
 }
 
 impl FloorWatch {
-    /// The next frame does not follow the last one.
+    /// States that the next frame does not follow the last one.
     pub(super) fn interrupt(&mut self) {
         self.previous = None;
     }
 
-    /// Takes the next frame; the `first` of a run has nothing to be compared with.
+    /// Takes the next frame; the `first` of a run is not compared with the one before.
     pub(super) fn push(&mut self, time_us: f64, frame: &Frame, first: bool) {
         let window = window_values(frame);
         let deviation = self
@@ -34,7 +34,8 @@ impl FloorWatch {
         self.deviations_dn.entry(time_us.to_bits()).or_default().extend(deviation);
     }
 
-    /// The floor at the shortest time; `None` where it has no two frames in a row, or quantization hides the noise.
+    /// The floor at the shortest time; `None` where that has no two consecutive frames, or quantization hides the
+    /// noise.
     pub(super) fn floor(&self) -> Option<NoiseFloor> {
         let (&bits, deviations) = self.deviations_dn.iter().next()?;
         let mean = deviations.iter().sum::<f64>() / deviations.len() as f64;

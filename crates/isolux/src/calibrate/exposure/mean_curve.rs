@@ -15,7 +15,7 @@ pub(super) struct MeanCurve {
     pixels: Vec<PixelHistory>,
 }
 
-/// Sum of the positive amplitudes of a frame, number of them, of the zeros, and of the saturated pixels.
+/// Sum and number of the positive amplitudes of a frame, and the numbers of zeros and of saturated pixels.
 #[derive(Clone, Copy, Debug, Default)]
 struct FrameSums {
     sum: f64,
@@ -24,22 +24,23 @@ struct FrameSums {
     saturated: usize,
 }
 
-/// Tells a dead pixel (0 in every frame) from one that is dark or collapsed for a while.
+/// Distinguishes dead pixels (0 in every frame) from pixels that are dark or over-saturated in some frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelHistory {
     ever_other: bool,
 }
 
-/// What the sums say.
+/// The means of all frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Means {
-    /// In the order of time.
+    /// By increasing time.
     pub(super) samples: Vec<ExposureSample>,
     /// Share of the pixels that carry the camera's saturation code, for each sample.
     pub(super) saturated_share: Vec<f64>,
     /// Times at which a frame has no pixel with a value, µs.
     pub(super) without_measurement_us: Vec<f64>,
-    /// First frame of a run against the last, relative, median over the times with two frames or more.
+    /// Relative difference of the first frame of a run from the last, median over the times with two frames or
+    /// more.
     pub(super) drift: Option<f64>,
 }
 
@@ -73,8 +74,8 @@ impl MeanCurve {
 
     /// The means of all times.
     ///
-    /// A pixel that is 0 at some times only (too dark, or collapsed by over-saturation) counts as 0 there: to
-    /// leave it out would change which pixels are averaged, and bend the curve. Dead pixels never count.
+    /// A pixel that is 0 at some times only (too dark or over-saturated) counts as 0 there: without it, the mean
+    /// would be over other pixels, which would distort the curve. Dead pixels never count.
     pub(super) fn means(&self) -> Means {
         let dead = self.pixels.iter().filter(|pixel| !pixel.ever_other).count();
         let pixels = self.pixels.len().max(1) as f64;

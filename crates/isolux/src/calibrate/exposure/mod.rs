@@ -1,5 +1,5 @@
-//! Exposure sweeps: a still scene while the integration time varies. They tell the table over integration time, the
-//! response of the pixels and the noise.
+//! Exposure sweeps: recordings of a still scene at several integration times, to which the table over integration
+//! time, the response of the pixels and the noise are fitted.
 
 mod evidence;
 mod fit;

@@ -1,4 +1,5 @@
-//! Measuring the noise of a recording: how much pixels that should be equal differ, in groups of like light.
+//! Measures the noise of a recording: by how much amplitudes that should be equal differ, in groups of similar
+//! light.
 
 #[cfg(test)]
 mod tests;
@@ -11,23 +12,24 @@ use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviati
 use crate::terms::noise::NoiseCell;
 use crate::terms::{Noise, Source};
 
-/// Pixels of like time, amplitude and intensity: upper bits of the f32, which order like the values.
+/// Group of pixels of similar time, amplitude and intensity: the upper bits of each f32, which order like the
+/// values.
 type Key = (u32, u32, u32);
 
 /// Times within 1 % are one.
 const TIME_SHIFT: u32 = 16;
-/// Two groups an octave of amplitude or intensity.
+/// Two groups per octave of amplitude or intensity.
 const LIGHT_SHIFT: u32 = 22;
-/// Frames that are looked at for their spatial noise: it tells the same in each.
+/// Number of frames whose spatial noise is measured; more would add nothing.
 const SPATIAL_FRAMES: usize = 8;
-/// Fewer differences in a group of a frame do not tell its deviation.
+/// Least number of differences in a group of a frame from which a deviation is computed.
 const LEAST_DIFFERENCES: usize = 16;
 
-/// Collects differences frame by frame: between consecutive frames of one integration time, and, as long as there
-/// are none, between neighbouring pixels. Memory does not grow with the number of frames.
+/// Collects differences frame by frame: between consecutive frames of one integration time, or between neighbouring
+/// pixels while there are no such frames. Memory does not grow with the number of frames.
 ///
-/// Between frames, what is common to a group (a drift of the gain) is taken out, and the largest 5 % of the
-/// differences, which are movement. Between pixels, texture counts as noise.
+/// Between frames, the mean difference of a group (a drift of the gain) is removed, and so are the largest 5 % of
+/// the differences (movement). Between pixels, texture counts as noise.
 #[derive(Clone, Debug)]
 pub struct NoiseSurvey {
     shape: Shape,
@@ -61,7 +63,7 @@ struct Kept {
     time_us: Vec<f32>,
 }
 
-/// Differences of one group in one frame, and sums of what they are differences of.
+/// Differences of one group in one frame, and sums of the values that were compared.
 #[derive(Clone, Debug, Default)]
 struct Group {
     differences: Vec<f64>,
@@ -80,31 +82,31 @@ struct Sums {
     time_us: f64,
 }
 
-/// What a survey found.
+/// The result of a survey.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NoiseCells {
     /// The groups.
     pub cells: Vec<NoiseCell>,
-    /// True where they come from neighbouring pixels, for want of repeated frames.
+    /// True when they come from neighbouring pixels, because there were no repeated frames.
     pub spatial: bool,
     /// Variance of the amplitude's own quantization, DN²: 1/12 where all amplitudes are whole numbers.
     pub quantization_variance_dn2: f64,
 }
 
 impl NoiseSurvey {
-    /// Nothing seen yet.
+    /// A survey without frames.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The next frame does not follow the last one: their differences would be more than noise.
+    /// States that the next frame does not follow the last one, so that the two are not compared.
     pub fn interrupt(&mut self) {
         self.previous = None;
     }
 
-    /// Takes the next frame. Pixels that are INVALID or SATURATED take no part. A frame whose planes differ in shape
-    /// is passed over.
+    /// Takes the next frame. INVALID and SATURATED pixels do not count. A frame whose planes differ in shape is
+    /// ignored.
     pub fn push(&mut self, frame: &Frame) {
         if frame.check_shapes().is_err() {
             return self.interrupt();
@@ -171,7 +173,7 @@ impl NoiseSurvey {
         group.time_us += f64::from(time_us);
     }
 
-    /// What was found.
+    /// The noise of the frames so far.
     #[must_use]
     pub fn finish(&self) -> NoiseCells {
         let spatial = self.temporal.is_empty();
@@ -228,7 +230,7 @@ fn settle(
     groups.clear();
 }
 
-/// Of differences between frames, after what is common to them.
+/// Standard deviation of differences between frames, without their mean.
 fn temporal_deviation(differences: &mut [f64]) -> Option<f64> {
     let common = median(differences)?;
     differences.iter_mut().for_each(|difference| *difference -= common);
@@ -239,7 +241,7 @@ fn temporal_deviation(differences: &mut [f64]) -> Option<f64> {
     Some(trimmed_deviation(differences)? / (1.0 - 4.06 * cut).sqrt())
 }
 
-/// Of differences between pixels: edges are more than a few of them.
+/// Standard deviation of differences between pixels, many of which may be edges.
 fn spatial_deviation(differences: &mut [f64]) -> Option<f64> {
     Some(SIGMA_PER_MAD * median_absolute_deviation(differences)?)
 }
@@ -276,7 +278,7 @@ impl NoiseCells {
         self.cells.retain(|cell| cell.integration_time_us.is_none_or(|time_us| time_us <= longest_us));
     }
 
-    /// The noise of these cells; `None` where they show none.
+    /// Fits the noise term to these cells; `None` where they do not determine it.
     #[must_use]
     pub fn fit(&self, fitted_on: Vec<Source>) -> Option<Noise> {
         Noise::fit(&self.cells, self.quantization_variance_dn2, fitted_on)

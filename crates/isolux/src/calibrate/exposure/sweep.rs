@@ -1,4 +1,4 @@
-//! Measuring an exposure sweep: everything that one recording of a still scene at varying integration times tells.
+//! Measures an exposure sweep: a recording of a still scene at several integration times.
 
 use super::ExposureWarning;
 use super::evidence::{Collector, ResponseEvidence};
@@ -29,27 +29,28 @@ pub struct ExposureSweep {
     motion: MotionWatch,
 }
 
-/// What an exposure sweep says: one mean per integration time.
+/// The result of an exposure sweep: one mean per integration time, and what response and noise are fitted to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExposureCurve {
     /// The recording.
     pub source: Source,
-    /// Means in the order of time.
+    /// Mean amplitudes by increasing time.
     pub samples: Vec<ExposureSample>,
     /// Share of the pixels that carry the camera's saturation code, for each sample.
     pub saturated_share: Vec<f64>,
-    /// Noise at the shortest time, where a run has two frames.
+    /// Noise at the shortest time; `None` unless a run of it has two frames.
     pub noise_floor: Option<NoiseFloor>,
-    /// Noise at the times up to half of the largest mean amplitude; only that of repeated frames makes a term.
+    /// Noise at the times up to half of the largest mean amplitude. Only the noise of repeated frames becomes a
+    /// term.
     pub noise: NoiseCells,
-    /// What the sweep offers for the response.
+    /// What the response is fitted to.
     pub evidence: ResponseEvidence,
-    /// What is odd about the recording.
+    /// Warnings about the recording.
     pub warnings: Vec<ExposureWarning>,
 }
 
 impl ExposureSweep {
-    /// Starts a sweep; `recording` is the name that errors and the calibration give it.
+    /// Starts a sweep; `recording` is its name in errors and in the calibration.
     #[must_use]
     pub fn new(recording: impl Into<String>, settings: &CalibrateSettings) -> Self {
         Self {
@@ -66,7 +67,7 @@ impl ExposureSweep {
     /// Measures the next frame.
     ///
     /// # Errors
-    /// [`MeasureError`] when the frame has no single known integration time, or planes that do not fit.
+    /// [`MeasureError`] when the frame has no single known integration time, or planes of different shapes.
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let time_us = single_time(&frame.integration_time_us)
@@ -88,7 +89,7 @@ impl ExposureSweep {
         Ok(())
     }
 
-    /// Ends the sweep.
+    /// Ends the sweep and computes its result.
     #[must_use]
     pub fn finish(self) -> ExposureCurve {
         let means = self.curve.means();
@@ -129,8 +130,8 @@ impl ExposureSweep {
     }
 }
 
-/// The longest time before the mean amplitude exceeds half of its largest value, µs: a full well compresses the noise
-/// with the amplitude, by less than a tenth down there.
+/// The longest time before the mean amplitude exceeds half of its largest value, µs. Saturation reduces the noise
+/// together with the amplitude; up to that time by less than a tenth.
 fn nearly_linear_up_to(samples: &[ExposureSample]) -> f64 {
     let largest = samples.iter().map(|sample| sample.mean_amplitude_dn).fold(0.0, f64::max);
     let below = samples.iter().take_while(|sample| sample.mean_amplitude_dn <= 0.5 * largest);
@@ -138,12 +139,12 @@ fn nearly_linear_up_to(samples: &[ExposureSample]) -> f64 {
 }
 
 impl ExposureCurve {
-    /// Shares of saturated pixels above this bend the mean, since their codes cannot be averaged.
+    /// A larger share of saturated pixels distorts the mean, because their codes cannot be averaged.
     const SATURATED_SHARE: f64 = 0.005;
-    /// A table with fewer times interpolates over more than its shape tells.
+    /// With fewer times, the table interpolates over too large steps.
     const ENOUGH_TIMES: usize = 8;
 
-    /// What the user should know of the table that was fitted on this curve.
+    /// Warnings about the table that was fitted to this curve.
     pub(super) fn warnings_for(&self, lut: &Lut) -> Vec<ExposureWarning> {
         let recording = || self.source.recording.clone();
         let mut warnings = self.warnings.clone();

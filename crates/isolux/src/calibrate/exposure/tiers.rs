@@ -1,4 +1,4 @@
-//! From the evidence of exposure sweeps to the tiers of the response.
+//! Fits the tiers of the response to exposure sweeps.
 
 use super::{ExposureCurve, MissingTier};
 use crate::calibrate::CalibrateSettings;
@@ -13,8 +13,8 @@ pub(super) fn sources(curves: &[ExposureCurve]) -> Vec<Source> {
     curves.iter().map(|curve| curve.source.clone()).collect()
 }
 
-/// Every tier that the sweeps determine, and those that they do not. The mean curve is that of the table, in which
-/// several sweeps are merged already. No response when there is not even a scalar.
+/// Fits every tier that the sweeps determine, and lists those that they do not. The mean curve is that of the
+/// table, in which several sweeps are already merged. Without a scalar tier, there is no response.
 pub(in crate::calibrate) fn fit_response(
     settings: &CalibrateSettings,
     curves: &[ExposureCurve],
@@ -27,7 +27,7 @@ pub(in crate::calibrate) fn fit_response(
     let least_dn = floors.map(|floor| floor.low_signal_below_dn).fold(0.0, f64::max);
     let stacks: Vec<&AmplitudeStack> = curves.iter().map(|curve| &curve.evidence.stack).collect();
     let amplitude = keep("amplitude", AmplitudeResponse::fit(&stacks, least_dn, fitted_on()), &mut missing);
-    // A map holds for one scene, so that several sweeps have none in common.
+    // A map is valid for one scene only, so that several sweeps have no common map.
     let pixel = match stacks.as_slice() {
         [stack] => keep("pixel", PixelResponse::fit(stack, least_dn, fitted_on()), &mut missing),
         _ => None,

@@ -1,11 +1,11 @@
-//! What is odd about an exposure sweep, or the table and the response that are fitted on it.
+//! Warnings about exposure sweeps, and the table and the response that are fitted to them.
 
 use std::fmt;
 
 use crate::advice::Advice;
 use crate::terms::response::ResponseError;
 
-/// One finding about an exposure sweep, with its numbers.
+/// A warning about an exposure sweep, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExposureWarning {
@@ -18,19 +18,19 @@ pub enum ExposureWarning {
     Settling {
         /// The recording.
         recording: String,
-        /// First frame against last of a run, relative, median over runs.
+        /// Relative difference of the first frame of a run from the last, median over the runs.
         relative_drift: f64,
     },
     /// The scene did not stand still.
     SceneMoved {
         /// The recording.
         recording: String,
-        /// Time at which it stood elsewhere, µs.
+        /// Time at which the scene had moved, µs.
         integration_time_us: f64,
         /// Share of the image that moved.
         share: f64,
     },
-    /// An integration time at which a frame has no pixel with a value.
+    /// An integration time that was left out, because a frame has no pixel with a value.
     NoMeasurement {
         /// The recording.
         recording: String,
@@ -53,7 +53,7 @@ pub enum ExposureWarning {
         /// Largest share of the pixels.
         share: f64,
     },
-    /// A tier of the response that is not fitted.
+    /// A tier of the response that could not be fitted.
     NoTier(MissingTier),
 }
 
@@ -108,7 +108,7 @@ impl fmt::Display for ExposureWarning {
     }
 }
 
-/// A tier of the response that the recordings have the channels for, but do not determine.
+/// A tier of the response that the recordings do not determine although they have its channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MissingTier {
     /// The tier.

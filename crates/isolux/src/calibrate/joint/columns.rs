@@ -1,4 +1,4 @@
-//! The unknowns in a row of numbers, and the few that one observation touches.
+//! The order of the unknowns, and the row of the design matrix that belongs to an observation.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::terms::spline::Harmonic;
 const INTERVALS: usize = 12;
 /// Most columns of one observation: time, spline, harmonic, profile, angle.
 const LONGEST: usize = 1 + 4 + 2 + RADIAL + 16 + 1;
-/// Standard deviation of the prior of every coefficient, in ln: it tells a solution apart where the observations
+/// Standard deviation of the prior of every coefficient, in ln. It makes the solution unique where the observations
 /// do not, and is so wide that the factor's predicted error then shows it.
 const COEFFICIENT_SD: f64 = 10.0;
 
@@ -89,7 +89,7 @@ impl Columns {
         Self { times, law, harmonic, radial, tensor, angle, len, distance, surface, model: *model }
     }
 
-    /// What the unknowns explain of an observation.
+    /// The row of one observation.
     pub(super) fn row(&self, observation: &Observation) -> Row {
         let mut row = Row::new();
         if !self.times.is_empty() {
@@ -103,7 +103,7 @@ impl Columns {
         row
     }
 
-    /// The law at one distance (m), its slope of −2 aside.
+    /// The law at one distance (m), without its slope of −2.
     pub(super) fn at_distance(&self, distance_m: f64) -> Row {
         let mut row = Row::new();
         self.push_distance(distance_m, &mut row);
@@ -136,7 +136,7 @@ impl Columns {
         }
     }
 
-    /// What the model knows of an observation before anything is fitted.
+    /// The part of an observation's ln A that does not depend on the unknowns.
     pub(super) fn known(&self, observation: &Observation) -> f64 {
         let law = self
             .model

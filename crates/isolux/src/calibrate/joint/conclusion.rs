@@ -1,4 +1,4 @@
-//! What the solved problem says, in gauge.
+//! The fitted factors, each normalized to its gauge (1 at its reference).
 
 use super::determine::findings;
 use super::factor::Factor;
@@ -23,9 +23,9 @@ pub struct JointFit {
     pub profile: Option<ProfileFit>,
     /// k, where it was fitted.
     pub angle_exponent: Option<f64>,
-    /// What the observations know of each fitted factor, and which are refused.
+    /// How well the observations determine each fitted factor, and which factors are refused.
     pub findings: Vec<Finding>,
-    /// Unknowns beside the surfaces' levels.
+    /// Number of unknowns, without the surfaces' levels.
     pub unknowns: usize,
     /// Rank of the reduced normal matrix, columns of unit length, eigenvalues above 1e-9 of the largest. Constants,
     /// which the levels take up, and r² and r⁴, which the tensor nearly holds, are expected to be missing.
@@ -34,7 +34,7 @@ pub struct JointFit {
     pub surfaces: usize,
     /// Robust standard deviation of an observation of weight 1, in ln.
     pub sigma: f64,
-    /// Residual of each observation as it was given, in ln; NaN where it took no part.
+    /// Residual of each observation, in ln, in the order given; NaN where it did not count.
     pub residuals: Vec<f64>,
     /// Its robust weight, 0 to 1 times its own.
     pub weights: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct ProfileFit {
 }
 
 impl JointFit {
-    /// Why the factor is not given out, where it was fitted and is not.
+    /// Why a fitted factor is withheld; `None` where it is not.
     #[must_use]
     pub fn refusal(&self, factor: Factor) -> Option<&Refusal> {
         self.findings.iter().find(|finding| finding.factor == factor).and_then(|f| f.refusal.as_ref())
@@ -99,7 +99,7 @@ fn law(problem: &Problem, robust: &Robust) -> Option<Law> {
     let (ends, _) = columns.distance?;
     let law = columns.model.distance?;
     let coefficients = robust.coefficients.as_slice();
-    // B-splines sum to 1, so a constant taken from all takes it from ln h.
+    // B-splines sum to 1: subtracting a constant from all coefficients subtracts it from ln h.
     let gauge = columns.at_distance(law.reference_m).dot(coefficients);
     let harmonic = law.modulation_frequency_hz.map(|modulation_frequency_hz| Harmonic {
         modulation_frequency_hz,
@@ -132,7 +132,7 @@ fn profile(problem: &Problem, robust: &Robust, cell_errors: Vec<Option<f64>>) ->
 fn rank(robust: &Robust) -> usize {
     const LEAST: f64 = 1e-9;
     let gram = &robust.normal.gram;
-    // No column is larger than about 1; what its elimination leaves of one that is constant is rounding.
+    // Columns are at most about 1; what the elimination leaves of a constant column is rounding.
     let rounding = 1e-10 * robust.normal.total;
     let length = |i: usize| Some(gram[(i, i)]).filter(|square| *square > rounding).map_or(0.0, f64::sqrt);
     let unit = nalgebra::DMatrix::from_fn(gram.nrows(), gram.ncols(), |i, j| {

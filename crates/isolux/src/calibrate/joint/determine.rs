@@ -1,12 +1,14 @@
-//! What do the observations know of each factor?
+//! How well the observations determine each factor.
 //!
-//! Three questions, each of the curve that the factor is (ln h at 33 distances, ln v in the cells of the image that
-//! were seen, s at every time, the effect of k at 60°), not of its coefficients:
-//! - Were all other factors known, what would its standard error be? Too large: it was not seen.
-//! - How much larger does the error get because the others are unknown too (the square root of the variance
-//!   inflation)? Too much: it is confounded with them, and small faults of the model would grow by as much.
-//! - How much do ln d and ln cosθ vary that the other factors cannot take up? Both are measured, with errors of a
-//!   few percent, and a slope over little else than those errors comes out too small.
+//! Three questions are asked about each factor. They are about its curve (ln h at 33 distances, ln v in the
+//! observed cells of the image, s at every time, the effect of k at 60°), not about its coefficients:
+//! - What would its standard error be if all other factors were known? If it is too large, the factor was not
+//!   observed.
+//! - By what factor does the error grow because the others are unknown too (the square root of the variance
+//!   inflation)? If it grows too much, the factor is confounded with them, and small errors of the model would grow
+//!   as much.
+//! - How much do ln d and ln cosθ vary beyond what the other factors explain? Both are measured with errors of a
+//!   few percent. If they vary by little more than these errors, the fitted slope is too small.
 
 use std::ops::Range;
 
@@ -79,7 +81,7 @@ impl Knowledge<'_> {
         };
         let narrow_with =
             |with: &[Factor]| narrow(factor.least_spread().map(|_| self.free_spread(factor, with)));
-        // NaN, where the arithmetic failed, is too large as well.
+        // NaN (failed arithmetic) counts as too large.
         let too_large = |error: f64| error.is_nan() || error > Finding::LARGEST_ERROR;
         let refusal = if too_large(alone) || narrow_with(&[]) {
             Some(Refusal::NotSeen { factor })
@@ -154,7 +156,7 @@ impl Knowledge<'_> {
         }
     }
 
-    /// Standard deviation, within surfaces, of ln d or ln cosθ beside what `others` can take up.
+    /// Standard deviation, within surfaces, of that part of ln d or ln cosθ that `others` do not explain.
     fn free_spread(&self, factor: Factor, others: &[Factor]) -> f64 {
         let columns = self.columns;
         let mut direction = DVector::zeros(columns.len);

@@ -16,7 +16,7 @@ pub enum Factor {
 impl Factor {
     pub(super) const ALL: [Self; 4] = [Self::Time, Self::Distance, Self::Profile, Self::Angle];
 
-    /// In words.
+    /// Its name in messages.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -1,17 +1,19 @@
 //! The joint model: time, distance, illumination profile and angle of incidence, fitted together (methods,
 //! section 4): `ln A_n = e_i(n) + s_j(n) + ln h(d_n) + ln v(x_n, y_n) + k ln cosθ_n + ε`.
 //!
-//! Every surface (a material, or one point of a scene) has a level e_i of its own, which is eliminated from the
-//! normal equations exactly (Schur complement); what is left has some seventy unknowns, however many observations
-//! and surfaces there are. Robust: iteratively reweighted, Huber's weights first, then Tukey's biweight
-//! (c = 4.685 σ, σ = 1.4826 MAD).
+//! A is the amplitude (DN), s the effect of the integration time, h that of the distance d (m), v the illumination
+//! profile over the image, and k the exponent of the cosine of the angle of incidence. Every surface (a material,
+//! or one point of a scene) has a level e_i of its own, which is eliminated exactly from the normal equations
+//! (Schur complement). The remaining unknowns are about seventy, whatever the number of observations and surfaces.
+//! The fit is robust: iteratively reweighted, with Huber's weights first, then Tukey's biweight (c = 4.685 σ, σ =
+//! 1.4826 MAD).
 //!
 //! Smoothness is a prior on curvature (Wahba's reading of smoothing splines): that of ln h over ln d has a standard
 //! deviation of about [`LAW_CURVATURE`], that of the profile's tensor about [`PROFILE_CURVATURE`] per squared half
 //! diagonal. The weight against the observations follows from their own σ.
 //!
-//! A recording need not determine every factor. [`JointFit::findings`] says for each what the observations know of it,
-//! and why it is refused where they do not; the numbers of a refused factor are not given out.
+//! A recording need not determine every factor. [`JointFit::findings`] says how well the observations determine
+//! each factor, and why a factor is refused. The numbers of a refused factor are withheld.
 
 mod columns;
 mod conclusion;
@@ -34,12 +36,12 @@ pub use model::{
 };
 pub use refusal::{Refusal, Vary};
 
-/// Fits the model to the observations. Those with a value that is not finite and positive where the model needs it
-/// are left out. Memory: 60 bytes per observation.
+/// Fits the model to the observations. An observation is left out where a value that the model needs is not finite
+/// and positive. Memory: 60 bytes per observation.
 ///
 /// # Errors
-/// [`JointError`] when there is nothing to fit, or too little to fit it to. A factor that the observations do not
-/// determine is no error: see [`JointFit::findings`].
+/// [`JointError`] when there is nothing to fit, or there are too few observations. A factor that the observations
+/// do not determine is no error: see [`JointFit::findings`].
 pub fn solve(observations: &[Observation], model: &JointModel) -> Result<JointFit, JointError> {
     let problem = problem::Problem::new(observations, model)?;
     let robust = robust::solve(&problem)?;

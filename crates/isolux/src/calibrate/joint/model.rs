@@ -1,4 +1,4 @@
-//! What is observed, what is fitted to it, and why it cannot be.
+//! Observations, the model that is fitted to them, and why a fit fails.
 
 use crate::terms::profile::Places;
 
@@ -16,7 +16,7 @@ pub struct Observation {
     pub surface: u32,
     /// Which integration time; 0 where [`JointModel::time`] is absent.
     pub time: u16,
-    /// ln of the amplitude (DN), linearised where it compresses.
+    /// ln of the amplitude (DN), corrected for saturation where that is possible.
     pub ln_amplitude: f32,
     /// Radial distance, m; not used where [`JointModel::distance`] is absent.
     pub distance_m: f32,
@@ -24,12 +24,13 @@ pub struct Observation {
     pub place: [f32; 2],
     /// Cosine of the angle of incidence; not used where [`AngleModel::Absent`].
     pub cosine: f32,
-    /// Relative weight, 1 for an ordinary observation: inverse variance against the others'. With 0 it takes no part,
-    /// but its residual is told: a prediction.
+    /// Relative weight, proportional to the inverse variance; 1 for an ordinary observation. With the weight 0 the
+    /// observation does not enter the fit, but gets a residual, which tests the prediction.
     pub weight: f32,
 }
 
-/// What is fitted. What is left out is taken to be constant, or to be in `ln_amplitude` already.
+/// The factors that are fitted. A factor that is left out is assumed to be constant, or to be removed from
+/// `ln_amplitude` already.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointModel {
     /// Integration times.
@@ -40,8 +41,8 @@ pub struct JointModel {
     pub profile: Option<Places>,
     /// Angle of incidence.
     pub angle: AngleModel,
-    /// Factor on the weight of the curvatures' prior, 1 for independent errors. Errors that many observations share
-    /// (those of one frame, say) ask for more.
+    /// Factor on the weight of the curvatures' prior, 1 for independent errors. Use more where many observations
+    /// (those of one frame, say) share errors.
     pub smoothness: f64,
 }
 
@@ -70,18 +71,18 @@ pub enum AngleModel {
     Free,
     /// Known; 1 is Lambert's.
     Fixed(f64),
-    /// The angle plays no part (k = 0), and no cosine is needed.
+    /// The angle has no effect (k = 0), and no cosine is needed.
     Absent,
 }
 
-/// Why there is no fit at all.
+/// Why the model cannot be fitted at all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JointError {
     /// Nothing to fit, or a model that contradicts itself.
     #[error("{found} found, {expected} expected")]
     Model {
-        /// What was asked for.
+        /// The model that was asked for.
         found: String,
         /// What can be fitted.
         expected: &'static str,

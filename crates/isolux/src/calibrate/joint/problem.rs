@@ -10,7 +10,7 @@ const MOST_TIMES: usize = 1024;
 /// The observed distances are those between these quantiles: beyond them, the law goes on with its slope of −2.
 const ENDS: [f64; 2] = [0.001, 0.999];
 
-/// Least ratio of the ends: one distance alone has no range, but the splines need one to be written down.
+/// Least ratio of the ends: the splines need a range, even where there is only one distance.
 const LEAST_RANGE: f64 = 1.05;
 
 /// The usable observations, sorted by surface.
@@ -46,7 +46,7 @@ impl Problem {
             .collect();
         let surface = |number: &u32| observations[*number as usize].surface;
         numbers.sort_by_key(surface);
-        // One observation alone says no more than its own level.
+        // A single observation of a surface only determines the surface's level.
         let mut repeated = Vec::with_capacity(numbers.len());
         for group in numbers.chunk_by(|a, b| surface(a) == surface(b)).filter(|group| group.len() > 1) {
             repeated.extend_from_slice(group);
@@ -79,7 +79,7 @@ impl Problem {
         self.starts.windows(2).map(|ends| ends[0]..ends[1])
     }
 
-    /// ln A less what is known.
+    /// ln A, without the known part.
     fn response(&self, index: usize) -> f64 {
         let observation = &self.observations[index];
         f64::from(observation.ln_amplitude) - self.columns.known(observation)
@@ -121,8 +121,7 @@ impl Problem {
         Normal { gram, moment: DVector::from_vec(moment), total }
     }
 
-    /// What the coefficients leave of each observation, its surface's level taken out; NaN where the surface has no
-    /// weight.
+    /// Residual of each observation, without its surface's level; NaN where the surface has no weight.
     pub(super) fn residuals(&self, coefficients: &[f64], weights: &[f64], out: &mut Vec<f64>) {
         out.clear();
         for group in self.groups() {
@@ -141,7 +140,7 @@ impl Problem {
     }
 }
 
-/// Takes a surface's mean out: `G −= x̄ x̄ᵀ W`, `b −= x̄ ȳ W`.
+/// Removes a surface's mean: `G −= x̄ x̄ᵀ W`, `b −= x̄ ȳ W`.
 fn eliminate(gram: &mut [f64], moment: &mut [f64], sums: &[f64], weight_sum: f64, response_sum: f64) {
     let unknowns = sums.len();
     for (i, &sum) in sums.iter().enumerate().filter(|(_, sum)| **sum != 0.0) {

@@ -1,28 +1,28 @@
-//! Why a factor of the joint model is not given out, and what to vary in the next recording.
+//! Why a factor of the joint model is withheld, and what to vary in the next recording.
 
 use std::fmt;
 
 use super::factor::Factor;
 
-/// Largest standard error of a curve that is given out.
+/// Largest standard error of a curve that becomes a term.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
 
 /// Why a factor is not determined.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// What it depends on hardly changes within any surface.
+    /// The quantity it depends on hardly changes within any surface.
     NotSeen {
         /// Which factor.
         factor: Factor,
     },
-    /// It cannot be told from others.
+    /// It cannot be separated from other factors.
     Confounded {
         /// Which factor.
         factor: Factor,
         /// With these.
         with: Vec<Factor>,
-        /// By how much the others' being unknown multiplies its error.
+        /// Factor by which its error grows because the others are unknown.
         inflation: f64,
     },
     /// The observations are too few or too noisy.
@@ -40,21 +40,21 @@ pub enum Refusal {
 pub enum Vary {
     /// The distance of one material.
     Distance,
-    /// The distance at which each place of the image sees the target.
+    /// The distance of the target at each place of the image.
     DistanceAtEachPlace,
-    /// The place in the image where the target is seen.
+    /// The place of the target in the image.
     Place,
     /// The tilt of the target.
     Angle,
     /// The tilt of the target, at each place of the image.
     AngleAtEachPlace,
-    /// Two things that have changed together, each without the other.
+    /// Two quantities that changed together: each without the other.
     Apart,
     /// Nothing: more frames, or more light.
     MoreLight,
 }
 
-/// How a recording must have been made that two factors cannot be told apart.
+/// How a recording was made in which two factors cannot be separated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     AlwaysTiltedAlike,
@@ -64,7 +64,7 @@ enum Cause {
 }
 
 impl Refusal {
-    /// What to vary in the next recording; `None` where the refusal does not tell it.
+    /// What to vary in the next recording; `None` where the refusal does not determine it.
     #[must_use]
     pub fn vary(&self) -> Option<Vary> {
         match self {

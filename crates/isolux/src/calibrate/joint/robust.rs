@@ -12,9 +12,9 @@ const START_ITERATIONS: usize = 6;
 const ITERATIONS: usize = 40;
 /// Settled when the residuals move by less than this share of σ (root mean square).
 const SETTLED: f64 = 1e-3;
-/// σ before anything is known, in ln.
+/// First estimate of σ, in ln.
 const FIRST_SIGMA: f64 = 0.1;
-/// Least σ that is reckoned with, in ln: observations are f32, and an exact relation must not divide by 0.
+/// Least σ, in ln: observations are f32, and an exact relation must not divide by 0.
 const LEAST_SIGMA: f64 = 1e-5;
 
 /// Where the iteration ended.
@@ -53,7 +53,7 @@ pub(super) fn solve(problem: &Problem) -> Result<Robust, JointError> {
         let starting = iteration < START_ITERATIONS;
         sigma = scale(problem, &residuals, &given);
         for ((weight, residual), given) in weights.iter_mut().zip(&residuals).zip(&given) {
-            // A surface that was rejected as a whole has no level and stays out.
+            // A surface that was rejected as a whole has no level and does not count.
             let scaled = residual * given.sqrt() / sigma;
             *weight = if scaled.is_finite() { given * Loss::Tukey.weight(scaled, starting) } else { 0.0 };
         }
@@ -74,7 +74,7 @@ fn has_settled(residuals: &[f64], last: &[f64], sigma: f64) -> bool {
     count > 0.0 && sum <= (SETTLED * sigma).powi(2) * count
 }
 
-/// 1.4826 MAD of the residuals at weight 1, with the degrees of freedom that the levels have taken.
+/// 1.4826 MAD of the residuals at weight 1, corrected for the degrees of freedom of the levels.
 fn scale(problem: &Problem, residuals: &[f64], given: &[f64]) -> f64 {
     let mut scaled: Vec<f64> = residuals
         .iter()

@@ -1,5 +1,5 @@
-//! Where a view was taken, from the surfaces that are known: projective point-to-plane alignment (Chen and Medioni
-//! 1991; Rusinkiewicz and Levoy 2001), robust, and checked before it is believed.
+//! Estimates the pose of a view from the known surfaces: robust projective point-to-plane alignment (Chen and
+//! Medioni 1991; Rusinkiewicz and Levoy 2001), which is checked before it is used.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -17,19 +17,20 @@ const FIRST_GATE_M: f64 = 0.3;
 const GATE_SHRINKS: f64 = 0.85;
 /// Settled when a step moves no point by more than this share of its error.
 const SETTLED: f64 = 0.02;
-/// Normals less certain than this (rad) hold nothing but noise.
+/// Normals with a larger standard error (rad) are not used.
 const LARGEST_NORMAL_ERROR: f64 = 0.25;
-/// Fewer surfaces in common than this are no basis.
+/// Least number of common surfaces for an alignment.
 const LEAST_SURFACES: usize = 60;
 /// The facets of neighbouring pixels share their windows, and a scene is not made of planes alone.
 const EXPECTED_SCALE: f64 = 5.0;
 /// Share of the common surfaces that must agree.
 const LEAST_AGREEING: f64 = 0.5;
-/// Root mean square of how much the surfaces resist the easiest motion, 1 where all face it, less what the noise of
-/// their normals feigns. Of a single plane that is 0 within some hundredths.
+/// Least hold: the root mean square of the surfaces' resistance to the motion that they resist least (1 where all
+/// face it), without the part that the noise of the normals adds. The hold of a single plane is 0 within some
+/// hundredths.
 const LEAST_HOLD: f64 = 0.03;
 
-/// Why the place of a view could not be told.
+/// Why the pose of a view could not be estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lost {
     /// Too few known surfaces in sight.
@@ -59,7 +60,7 @@ struct Pair {
     normal_error: f64,
 }
 
-/// Aligns `view`, from the first of the `guesses` that leads to a pose which can be believed.
+/// Aligns `view`, starting from each of the `guesses` until a pose passes the checks.
 pub(super) fn align(surfaces: &Surfaces, view: &View, guesses: &[Rigid]) -> Result<Aligned, Lost> {
     let mut outcome = Err(Lost::Unknown { surfaces: 0 });
     for guess in guesses {
@@ -95,7 +96,7 @@ fn from_guess(surfaces: &Surfaces, view: &View, guess: Rigid) -> Result<Aligned,
     believe(surfaces, view, pose)
 }
 
-/// The last look: with the gate wide open, so that what disagrees is seen.
+/// Checks a pose, with the widest gate, so that contradicting surfaces count.
 fn believe(surfaces: &Surfaces, view: &View, pose: Rigid) -> Result<Aligned, Lost> {
     let (pairs, unlike) = pairs(surfaces, view, &pose, FIRST_GATE_M);
     if pairs.len() < LEAST_SURFACES {

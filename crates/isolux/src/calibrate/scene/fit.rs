@@ -1,6 +1,7 @@
-//! From observations to the terms `lut`, `response`, `spline`, `profile` and `angle`.
+//! Fits the terms `lut`, `response`, `spline`, `profile` and `angle` to observations.
 //!
-//! What sweeps and targets have fitted stays: they know their surfaces. Scenes fill in what is absent.
+//! Terms that were fitted to sweeps and targets are kept, because their surfaces are known. Scenes add the absent
+//! ones.
 
 use super::joint_input::JointInput;
 use super::report::{SceneReport, SceneUse};
@@ -14,7 +15,7 @@ use crate::calibration::Calibration;
 use crate::terms::lut::{LutError, RelativeSample};
 use crate::terms::{FitQuality, Lut};
 
-/// One frame in five is left out once, for the held-out residual: scenes have observations enough.
+/// One frame in five is left out once for the held-out residual; scenes have enough observations.
 const HELD_OUT_FOLDS: std::ops::Range<u32> = 2..3;
 
 /// Fits the terms that the scenes determine, and that are absent, into `calibration`. Whatever was left out, and why,
@@ -79,7 +80,7 @@ fn solve(
     Ok((input, fit))
 }
 
-/// The compression of the pixels, from still scenes at several times, where no sweep has told it.
+/// Fits the response to still scenes at several times, if no sweep was given.
 fn fill_in_response(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
@@ -111,7 +112,7 @@ fn used(scenes: &[SceneObservations]) -> impl Iterator<Item = &SceneObservations
     scenes.iter().filter(|scene| !scene.observations.is_empty())
 }
 
-/// What is odd about single recordings.
+/// Warnings about single recordings.
 fn about(scenes: &[SceneObservations]) -> Vec<SceneWarning> {
     let warning = |scene: &SceneObservations| {
         let recording = scene.source.recording.clone();
@@ -126,7 +127,7 @@ fn about(scenes: &[SceneObservations]) -> Vec<SceneWarning> {
     scenes.iter().filter_map(warning).collect()
 }
 
-/// Writes what is determined and absent.
+/// Writes the terms that are determined and were absent.
 fn write(
     settings: &CalibrateSettings,
     input: &JointInput,
@@ -151,7 +152,7 @@ fn write(
     fill_in("angle", &mut terms.angle, fitted.angle(), warnings);
 }
 
-/// Puts what was `found` into an empty `place`, and tells whether it did; a term that is there stays.
+/// Puts the fitted term into `place` if that is empty, and returns whether it did; an existing term is kept.
 fn fill_in<T>(
     term: &'static str,
     place: &mut Option<T>,

@@ -1,8 +1,8 @@
-//! What hangs on the angle's exponent where the observations do not tell it.
+//! Refuses factors that depend on the angle's exponent where the observations do not determine it.
 //!
-//! The normals of a scene are measured, with errors. Where cosθ changes within surfaces by little more than these, the
-//! noise of the normals feigns an exponent, and with it a profile. So the exponent is held instead, at two values: a
-//! factor that differs between them is confounded with it.
+//! The normals of a scene are measured, with errors. Where cosθ changes within surfaces by little more than these
+//! errors, the noise of the normals leads to a wrong exponent, and with it to a wrong profile. The exponent is then
+//! fixed, at two values in turn: a factor that differs between the two fits is confounded with it.
 
 use super::joint_input::JointInput;
 use crate::calibrate::joint::{self, AngleModel, Factor, Finding, JointError, JointFit, JointModel, Refusal};
@@ -10,10 +10,11 @@ use crate::terms::angle::LAMBERT;
 use crate::terms::profile::Places;
 use crate::terms::root_mean_square;
 
-/// A factor that changes by more than this in ln (root mean square) when the exponent changes by 1 is not told.
+/// A factor is refused if it changes by more than this in ln (root mean square) when the exponent changes by 1.
 const LARGEST_CHANGE: f64 = 0.02;
 
-/// Fits the input. Where the exponent is refused, it is held at Lambert's 1, and what hangs on it is refused too.
+/// Fits the input. Where the exponent is refused, it is fixed at Lambert's 1, and factors that depend on it are
+/// refused too.
 pub(super) fn settle(input: &JointInput) -> Result<JointFit, JointError> {
     let free = joint::solve(&input.observations, &input.model)?;
     let Some(finding) = free.findings.iter().find(|finding| finding.factor == Factor::Angle) else {

@@ -1,10 +1,11 @@
-//! Ordinary recordings without a rig: the same surfaces at several distances, places in the image, angles
-//! and integration times, each of a reflectivity that nobody knows (methods, section 4).
+//! Ordinary recordings without a rig: the same surfaces, each of unknown reflectivity, at several distances, places
+//! in the image, angles and integration times (methods, section 4).
 //!
-//! Every frame is cut into facets (planes through neighbours). Facets that are plain, neither dim nor saturated nor
-//! at an edge, become surfaces; later frames look for known surfaces where the camera's motion puts them and take
-//! what they see there for the same, if distance and normal agree. Places and normals are means over all frames,
-//! because the noise of a single distance would bend the law over distance. One pass; memory is bounded.
+//! Every frame is divided into facets, planes through neighbouring pixels. A facet of one reflectivity that is
+//! neither dim nor saturated nor at an edge becomes a surface. Later frames look for each known surface where the
+//! camera's motion puts it; a facet there is the same surface if distance and normal agree. Positions and normals
+//! are means over all frames, because the noise of single distances would distort the law over distance. The
+//! recording is read once, and memory is bounded.
 
 mod align;
 mod facets;

@@ -1,4 +1,4 @@
-//! How the camera moved: as recorded, not at all, or as the surfaces tell.
+//! The camera's motion: recorded, none, or estimated from the surfaces.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub enum CameraMotion {
     Estimated,
 }
 
-/// What became of it.
+/// The camera's motion, as it was used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MotionFinding {
@@ -29,20 +29,20 @@ pub enum MotionFinding {
     Recorded(Travel),
     /// No motion.
     Still,
-    /// Estimated.
+    /// Poses estimated from the distances.
     Estimated {
-        /// How far.
+        /// How far the camera moved.
         travel: Travel,
         /// Frames that could not be aligned and were left out.
         frames_lost: usize,
         /// Scatter of the surfaces about their places, in expected standard errors, median over the frames.
         residual: f64,
     },
-    /// Nothing that could be believed.
+    /// The motion could not be estimated; the recording is not used.
     Refused(MotionRefusal),
 }
 
-/// How far a camera came about.
+/// How far a camera moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Travel {
     /// Largest distance from its first place, m.
@@ -51,7 +51,7 @@ pub struct Travel {
     pub turned_deg: f64,
 }
 
-/// Share of the frames that may be lost.
+/// Largest share of the frames that may fail to align.
 const LOST_SHARE: f64 = 0.5;
 
 /// Recorded poses that differ by less are those of a camera that stands still.
@@ -79,8 +79,8 @@ impl Path {
         self.motion == CameraMotion::Still
     }
 
-    /// The next frame's pose, world from camera; `None` where it cannot be told. Where nothing is known but a first
-    /// frame that nothing can be aligned with, `surfaces` are forgotten and the frame becomes the first.
+    /// The next frame's pose, world from camera; `None` where it cannot be estimated. If only the first frame is
+    /// known and this one cannot be aligned with it, `surfaces` are cleared and this frame becomes the first.
     pub(super) fn next(
         &mut self,
         number: usize,
@@ -118,7 +118,7 @@ impl Path {
             }
             Err(lost) => {
                 self.lost.push(lost);
-                // A jump leads nowhere: the next frame starts from the last known place.
+                // After a jump, the motion cannot be predicted: the next frame starts from the last known pose.
                 self.recent.truncate(1);
                 if self.poses.len() > 1 {
                     return None;

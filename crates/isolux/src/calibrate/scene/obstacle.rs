@@ -12,11 +12,11 @@ pub struct MotionRefusal {
     pub aligned: usize,
     /// All frames.
     pub frames: usize,
-    /// What stood against most of the others.
+    /// The obstacle in most of the other frames.
     pub reason: MotionObstacle,
 }
 
-/// What stands against an alignment.
+/// Why a frame cannot be aligned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MotionObstacle {
@@ -63,7 +63,7 @@ impl fmt::Display for MotionRefusal {
 }
 
 impl MotionObstacle {
-    /// The obstacle met most often, at its median.
+    /// The most frequent obstacle, with its median figures.
     pub(super) fn most_frequent(lost: &[Lost]) -> Self {
         let middle = |pick: &dyn Fn(&Lost) -> Option<f64>| {
             let mut values: Vec<f64> = lost.iter().filter_map(pick).collect();

@@ -22,7 +22,7 @@ pub struct SceneReport {
     pub rank: usize,
     /// Root mean square of the relative error on frames that were left out.
     pub held_out_residual: Option<f64>,
-    /// What the observations know of each factor.
+    /// How well the observations determine each factor.
     pub findings: Vec<Finding>,
 }
 
@@ -31,7 +31,7 @@ pub struct SceneReport {
 pub struct SceneUse {
     /// The recording.
     pub recording: String,
-    /// How the camera moved, or why that could not be told.
+    /// How the camera moved, or why that could not be estimated.
     pub motion: MotionFinding,
     /// Observations that it gave.
     pub observations: usize,

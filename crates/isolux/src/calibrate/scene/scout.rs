@@ -1,10 +1,10 @@
-//! A first look at a recording: where will its poses come from?
+//! Decides where the poses of a recording come from, in a pass before it is measured.
 
 use super::CameraMotion;
 use crate::frame::{Frame, IntegrationTime};
 use crate::still_scene::MotionWatch;
 
-/// Goes through a recording before it is measured.
+/// Looks through a recording before it is measured, to find out where its poses come from.
 #[derive(Clone, Debug, Default)]
 pub struct MotionScout {
     frames: usize,
@@ -25,7 +25,8 @@ impl MotionScout {
         self.watch.push(time_us, frame);
     }
 
-    /// Poses where every frame has one; no motion where the distances stay as they are; otherwise to be estimated.
+    /// Recorded poses if every frame has one; no motion if the distances do not change; else poses that must be
+    /// estimated.
     #[must_use]
     pub fn verdict(&self) -> CameraMotion {
         if self.frames > 0 && self.posed == self.frames {

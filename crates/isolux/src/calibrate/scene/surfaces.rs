@@ -1,4 +1,4 @@
-//! The surfaces of a scene, and every amplitude that was seen of each.
+//! The surfaces of a scene, and every amplitude that was measured on each.
 
 use nalgebra::Vector3;
 
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 0.01;
 /// Cosine of the largest angle between two normals of one surface; they are noisy.
 pub(super) const SAME_NORMAL: f64 = 0.8;
 
-/// Errors below this, m or rad, are not believed: noise-free distances must not divide by 0.
+/// Least error, m or rad: noise-free distances must not divide by 0.
 const LEAST_ERROR: f64 = 1e-6;
 
 /// A place on a surface.
@@ -174,7 +174,7 @@ impl Surfaces {
     }
 }
 
-/// What a pixel says of a surface that should be there; `None` where something else is.
+/// The sighting of a surface at the pixel where it should be; `None` where something else is.
 fn look(view: &View, pose: &Rigid, surface: &mut Surface, pixel: usize) -> Option<Sighting> {
     let facet = view.facet(pixel)?;
     let (ln_amplitude, sigma) = view.ln_amplitude(pixel)?;

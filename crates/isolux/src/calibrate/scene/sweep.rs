@@ -1,4 +1,4 @@
-//! Measuring an ordinary recording, frame by frame: every amplitude of every surface that is seen again.
+//! Measures an ordinary recording, frame by frame: every amplitude of every surface that is seen more than once.
 
 use nalgebra::Vector3;
 
@@ -47,7 +47,7 @@ pub struct SceneObservation {
     pub cosine: f32,
 }
 
-/// What a recording without a rig says.
+/// The result of an ordinary recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObservations {
     /// The recording.
@@ -56,17 +56,17 @@ pub struct SceneObservations {
     pub shape: Shape,
     /// Its pinhole, where it is known.
     pub intrinsics: Option<Intrinsics>,
-    /// How the camera moved, or why that could not be told.
+    /// How the camera moved, or why that could not be estimated.
     pub motion: MotionFinding,
-    /// Every observation of a surface that was seen more than once; none when the motion could not be told.
+    /// Every observation of a surface that was seen more than once; empty when the motion is unknown.
     pub observations: Vec<SceneObservation>,
     /// The same recording as an exposure sweep, where the camera stood still.
     pub exposure: Option<ExposureCurve>,
 }
 
 impl SceneSweep {
-    /// Starts a recording; `recording` is the name that errors and the calibration give it. A camera that stands still
-    /// needs no intrinsics. [`MotionScout`](super::MotionScout) tells which `motion` to expect.
+    /// Starts a recording; `recording` is its name in errors and in the calibration. A camera that stands still
+    /// needs no intrinsics. [`MotionScout`](super::MotionScout) finds out which `motion` to pass.
     #[must_use]
     pub fn new(
         recording: impl Into<String>,
@@ -90,8 +90,8 @@ impl SceneSweep {
     /// Measures the next frame.
     ///
     /// # Errors
-    /// [`MeasureError`] when the frame has no distances, planes that do not fit, no rigid pose where poses are said to
-    /// be recorded, or a moving camera no intrinsics.
+    /// [`MeasureError`] when the frame has no distances, planes of different shapes, or no rigid pose although
+    /// poses were announced; or when a moving camera has no intrinsics.
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let shape = *self.shape.get_or_insert(frame.shape());
@@ -105,7 +105,7 @@ impl SceneSweep {
         let time_us = single_time(&frame.integration_time_us).unwrap_or(f64::NAN);
         match &mut self.exposure {
             Some(exposure) if time_us.is_finite() => exposure.push(frame)?,
-            // Times that nobody knows tell nothing of the compression.
+            // Without known times, the saturation cannot be determined.
             _ => self.exposure = None,
         }
         if self.frames.place(time_us).is_none() {
@@ -139,7 +139,7 @@ impl SceneSweep {
         self.intrinsics.or(self.path.is_still().then_some(any))
     }
 
-    /// Distances and angles from what all frames together say of the surfaces.
+    /// The observations, with distances and angles from the mean surfaces of all frames.
     fn observations(&self, shape: Shape) -> Vec<SceneObservation> {
         let places: Vec<(Vector3<f64>, Vector3<f64>)> =
             self.surfaces.surfaces.iter().map(|surface| (surface.point_m(), surface.normal())).collect();

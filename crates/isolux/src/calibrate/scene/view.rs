@@ -1,4 +1,4 @@
-//! What one frame says of the surfaces before the camera.
+//! The surfaces that one frame shows.
 
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ const WINDOWS: [(usize, f64); 3] = [(14, 1.06), (7, 1.15), (3, 1.4)];
 const LARGEST_SCATTER: f64 = 0.06;
 /// Distances without noise still change from pixel to pixel.
 const LEAST_SCATTER: f64 = 1e-5;
-/// Surfaces more inclined than this say little of anything but their inclination.
+/// Surfaces at a lower cosine are not used: their amplitude depends mostly on the angle.
 pub(super) const LEAST_COSINE: f64 = 0.2;
 /// Amplitudes around a pixel that scatter by more than this, relative to what is usual, are a texture's.
 const TEXTURE: f64 = 1.8;
@@ -179,8 +179,8 @@ fn middle(values: &[f64], shape: Shape, index: usize) -> f64 {
     median(&mut around[..count]).unwrap_or(f64::NAN)
 }
 
-/// Depths with the weights that their amplitudes promise. A pixel's deviation from the median of its neighbours tells
-/// both: how much the dim scatter, and which ones are spikes.
+/// Inverse depths with weights by their amplitude. The deviations from the median of the neighbours show how much
+/// dim pixels scatter, and which pixels are spikes.
 fn depths(inverse_depth: &[f64], usual_ln_amplitude: &[f64], shape: Shape) -> Option<Vec<Depth>> {
     let deviation = |index: usize| (inverse_depth[index] / middle(inverse_depth, shape, index) - 1.0).abs();
     let deviations: Vec<f64> = (0..shape.pixels()).map(deviation).collect();

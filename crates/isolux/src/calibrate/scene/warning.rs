@@ -1,4 +1,4 @@
-//! What is odd about recordings without a rig, or what their fit has to leave out.
+//! Warnings about ordinary recordings and their fit.
 
 use std::fmt;
 
@@ -9,18 +9,18 @@ use crate::calibrate::factor_terms::FactorWarning;
 use crate::calibrate::joint::JointError;
 use crate::terms::lut::LutError;
 
-/// One finding about scenes, with its numbers.
+/// A warning about scenes, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneWarning {
-    /// A scene whose motion could not be told.
+    /// A scene that was left out, because its motion could not be estimated.
     MotionRefused {
         /// The recording.
         recording: String,
         /// Why.
         reason: MotionRefusal,
     },
-    /// A scene without two looks at anything.
+    /// A scene in which no surface was seen twice.
     Useless {
         /// The recording.
         recording: String,
@@ -32,14 +32,14 @@ pub enum SceneWarning {
     },
     /// A scene in which neither camera nor integration time changes.
     NothingVaries,
-    /// Integration times that scenes give no table of.
+    /// No table could be fitted to the scenes' integration times.
     NoTable {
         /// Why.
         reason: LutError,
     },
     /// A tier of the response that is not fitted.
     NoTier(MissingTier),
-    /// A term that scenes determine, but something better is there.
+    /// A term that scenes determine, but that was already fitted to sweeps or targets.
     TermKept {
         /// The term.
         term: &'static str,

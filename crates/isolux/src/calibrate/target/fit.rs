@@ -1,9 +1,9 @@
-//! From measured windows to the terms `spline`, `profile` and `angle`.
+//! Fits the terms `spline`, `profile` and `angle` to measured windows.
 //!
-//! A distance sweep's spline, where there is one, is kept and taken as known: its target faced the camera in the
-//! middle of the image, so that neither profile nor angle could bend it. An exposure sweep's table is taken as known
-//! too; otherwise every integration time gets a factor of its own, which is not given out: labels of a few windows
-//! make no table.
+//! The spline of a distance sweep, if there is one, is kept and taken as known: its target faced the camera in the
+//! middle of the image, so that neither profile nor angle could distort it. The table of an exposure sweep is taken
+//! as known too. Without a table, every integration time gets a factor of its own, which does not become a term: a
+//! few windows do not make a table.
 
 use super::joint_input::JointInput;
 use super::report::TargetReport;

@@ -8,7 +8,7 @@ use crate::numerics::robust::Loss;
 
 /// Windows that a material's own exponent needs.
 const LEAST_WINDOWS: usize = 40;
-/// Exponents that are surely larger (two standard errors) belong to glossy materials. Paper, cloth and wall paint
+/// A material is glossy if its exponent is larger than this by two standard errors. Paper, cloth and wall paint
 /// stay below 2; black print on the boards of data sets reaches 7.
 const GLOSSY: f64 = 2.5;
 
@@ -46,7 +46,7 @@ pub(super) fn judge(
     surfaces
 }
 
-/// The exponent and its standard error; `None` where the windows do not tell it.
+/// The exponent and its standard error; `None` where the windows do not determine it.
 fn exponent(input: &JointInput, mine: &[usize]) -> Option<(f64, f64)> {
     let used =
         || mine.iter().map(|&i| &input.observations[i]).filter(|o| o.cosine > 0.0 && o.distance_m > 0.0);

@@ -1,4 +1,4 @@
-//! What one window of a label says in one frame.
+//! Measures one window of a label in one frame.
 
 use super::patches::PATCH_PX;
 use crate::frame::PixelFlags;

@@ -1,6 +1,6 @@
-//! Recordings of labelled targets in any pose: medians of small windows inside a label, frame by frame. A row of pixels
-//! at the label's border that see two materials moves no median by much. They tell the spline, the profile and the
-//! exponent of the cosine.
+//! Recordings of labelled targets in any pose, to which the spline, the profile and the exponent of the cosine are
+//! fitted. They are measured by medians over small windows inside a label, frame by frame. A row of pixels at the
+//! label's border that see two materials hardly changes a median.
 
 mod error;
 mod fit;

@@ -7,15 +7,15 @@ use crate::calibrate::joint::Finding;
 pub struct TargetReport {
     /// Materials: labels of recordings.
     pub surfaces: Vec<SurfaceUse>,
-    /// What the windows know of each factor, of the model that the terms were taken from.
+    /// How well the windows determine each factor of the model that the terms were taken from.
     pub findings: Vec<Finding>,
-    /// Unknowns of that model beside the materials' brightnesses, and the rank of its normal matrix.
+    /// Unknowns of that model, without the brightness of each material.
     pub unknowns: usize,
     /// Rank of the reduced normal matrix; see [`crate::calibrate::joint::JointFit::rank`].
     pub rank: usize,
     /// Robust standard deviation of a window, in ln.
     pub sigma: f64,
-    /// True when the angle's exponent was held at Lambert's 1, because the windows do not tell it.
+    /// True when the angle's exponent was fixed at Lambert's 1, because the windows do not determine it.
     pub lambert_assumed: bool,
 }
 
@@ -30,7 +30,7 @@ pub struct SurfaceUse {
     pub windows: usize,
     /// Windows without a weight: outliers to the others, or left out with their material.
     pub outliers: usize,
-    /// Exponent of the cosine of this material alone, where its windows tell it.
+    /// Exponent of the cosine of this material alone, where its windows determine it.
     pub exponent: Option<f64>,
     /// True when it was left out because of its gloss.
     pub left_out: bool,

@@ -1,4 +1,4 @@
-//! Measuring a recording of labelled targets, frame by frame.
+//! Measures a recording of labelled targets, frame by frame.
 
 use super::measure::{WindowMedians, measure, middle_cosine};
 use super::patches::{PATCH_PX, Patches};
@@ -24,7 +24,7 @@ pub struct TargetSweep {
     linear: bool,
 }
 
-/// What a recording of targets says.
+/// The result of a recording of targets: medians over windows of 5×5 pixels.
 #[derive(Clone, Debug)]
 pub struct TargetWindows {
     /// The recording.
@@ -53,7 +53,7 @@ impl TargetWindows {
 }
 
 impl TargetSweep {
-    /// Starts a recording; `recording` is the name that errors and the calibration give it. Without `intrinsics`, there
+    /// Starts a recording; `recording` is its name in errors and in the calibration. Without `intrinsics`, there
     /// are no angles.
     #[must_use]
     pub fn new(
@@ -74,8 +74,8 @@ impl TargetSweep {
         }
     }
 
-    /// Says that the frames are linear in the light, as [`FrameLineariser`](crate::standardize::FrameLineariser) makes
-    /// them: their amplitudes grow with the integration time itself, not with the table.
+    /// States that the frames are linear in the light, as [`FrameLineariser`](crate::standardize::FrameLineariser)
+    /// makes them: their amplitudes are then corrected by `1/t`, not by the table.
     #[must_use]
     pub fn of_linear_frames(self) -> Self {
         Self { linear: true, ..self }
@@ -84,7 +84,8 @@ impl TargetSweep {
     /// Measures the next frame. Its integration time may be unknown or a map, its distance missing.
     ///
     /// # Errors
-    /// [`MeasureError`] when the frame has no labels, planes that do not fit, or another shape than the first.
+    /// [`MeasureError`] when the frame has no labels, planes of different shapes, or another shape than the first
+    /// frame.
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let target = frame.target.as_ref().ok_or(MeasureError::NoTarget { frame: number })?;

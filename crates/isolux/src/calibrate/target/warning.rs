@@ -1,11 +1,11 @@
-//! What is odd about a recording of targets, or what its fit has to leave out.
+//! Warnings about recordings of targets and their fit.
 
 use std::fmt;
 
 use crate::advice::Advice;
 use crate::calibrate::factor_terms::FactorWarning;
 
-/// One finding about recordings of targets, with its numbers.
+/// A warning about recordings of targets, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TargetWarning {

@@ -1,4 +1,4 @@
-//! The step that takes the angle of incidence out: a factor on the multipliers of a block.
+//! The step that removes the effect of the angle of incidence: a factor on the multipliers of a block.
 
 use crate::choice::AngleStep;
 use crate::frame::Channels;
@@ -8,7 +8,7 @@ use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::angle::{self, LAMBERT, LEAST_COSINE};
 
-/// What turns a cosine into a multiplier.
+/// How a cosine becomes a multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AnglePlan {
     exponent: f64,
@@ -17,7 +17,7 @@ pub(crate) struct AnglePlan {
     pub(crate) intrinsics: Intrinsics,
 }
 
-/// Off unless it is asked for.
+/// Plans the step; it is off unless it is asked for.
 ///
 /// # Errors
 /// [`PlanError`] when the recording lacks distance or intrinsics.
@@ -46,8 +46,8 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<AnglePlan>, PlanE
     Ok(Some(AnglePlan { exponent: LAMBERT, least_cosine: LEAST_COSINE, intrinsics }))
 }
 
-/// Multiplies the multipliers of pixels with these cosines, and flags those steeper than the term has seen. A pixel
-/// without an angle gets NaN.
+/// Multiplies the multipliers of pixels with these cosines, and flags pixels that are steeper than the term was
+/// fitted on. A pixel without an angle gets NaN.
 pub(crate) fn scale(planned: &AnglePlan, cosines: &[f32], gains: &mut [f32], flags: &mut [PixelFlags]) {
     for ((gain, flags), &cosine) in gains.iter_mut().zip(flags).zip(cosines) {
         *gain *= angle::multiplier(planned.exponent, f64::from(cosine)) as f32;

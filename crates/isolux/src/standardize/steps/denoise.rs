@@ -1,4 +1,4 @@
-//! The step that denoises the distance before it scales, and which distance scales in the end.
+//! The step that denoises the distance before it scales the amplitude.
 
 use crate::choice::DenoiseStep;
 use crate::denoise::{DenoiseRule, Denoiser};
@@ -9,7 +9,7 @@ use crate::standardize::planner::Planner;
 use crate::standardize::prepared::Prepared;
 use crate::standardize::report::Note;
 
-/// Plans the step; `distance_scales` says whether a step follows that scales by the distance.
+/// Plans the step; `distance_scales` is true when a step follows that scales by the distance.
 pub(crate) fn plan(planner: &mut Planner<'_>, distance_scales: bool) -> Option<DenoiseRule> {
     let Some(DenoiseStep::Smooth(rule)) = planner.choice.denoise else { return None };
     if !distance_scales {
@@ -20,17 +20,17 @@ pub(crate) fn plan(planner: &mut Planner<'_>, distance_scales: bool) -> Option<D
     Some(rule)
 }
 
-/// The distances that scale.
+/// The distances that scale the amplitude.
 #[derive(Clone, Copy)]
 pub(crate) struct ScalingDistance<'a> {
     /// Metres, one for each pixel.
     pub(crate) distance_m: &'a [f32],
-    /// Share of the variance of each delivered distance that denoising has left, 0..=1; empty: all of it.
+    /// Variance of each distance over that of the delivered one, 0..=1; empty when nothing was denoised.
     pub(crate) variance_left: &'a [f32],
 }
 
 /// The mean over the last frames where `prepared` has one, else the frame's own distance, denoised by the rule.
-/// `noise_wanted` says whether anybody asks how much of the noise is left.
+/// `variance_left` is computed only if `noise_wanted`.
 ///
 /// # Errors
 /// [`StandardizeError::DistanceMissing`] when the frame has none.

@@ -1,5 +1,6 @@
-//! The step that takes the distance out. The loop in [`crate::standardize::kernel`] applies its polynomial, flags what is
-//! extrapolated, and refuses what is no distance; a table is multiplied in before.
+//! The step that removes the effect of the distance. The loop in [`crate::standardize::kernel`] applies its
+//! polynomial, flags extrapolated pixels and makes pixels without a distance INVALID; a table enters the
+//! multipliers before.
 
 use crate::advice::RecordingKind;
 use crate::calibration::{Calibration, REFERENCE_DISTANCE_M};
@@ -9,14 +10,14 @@ use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::{DistanceLaw, eq5, square};
 
-/// The law and what its record says; the step is entered after that of the denoising, which depends on it.
+/// The law, and the texts that record it. The step is recorded after that of the denoising, which is planned later.
 pub(crate) struct PlannedDistance {
     pub(crate) law: DistanceLaw,
     pub(crate) term: &'static str,
     pub(crate) parameters: String,
 }
 
-/// Decides the law; `None` leaves the distance in.
+/// Plans the law; `None` does not scale by the distance.
 ///
 /// # Errors
 /// [`PlanError`] when something asked for by name cannot be done.
@@ -56,7 +57,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>,
     Ok(Some(PlannedDistance { law, term, parameters }))
 }
 
-/// The distance step of the method; notes what `best` goes without.
+/// The distance step of the method; adds a note when `best` has no term for it.
 fn default_step(planner: &mut Planner<'_>) -> DistanceStep {
     let holds =
         |calibration: &Calibration| (calibration.terms.spline.is_some(), calibration.terms.cubic.is_some());

@@ -1,8 +1,8 @@
-//! One room for each step of the chain: what it is planned from, and what it does to a frame.
+//! One module for each step of the chain, with its plan and its application to a frame.
 //!
-//! | step | takes | sets |
+//! | step | reads | sets the flags |
 //! |---|---|---|
-//! | [`response`] | amplitude and what tells the fill of the pixel | SATURATED, INVALID |
+//! | [`response`] | amplitude and the channel that shows the fill of the pixel | SATURATED, INVALID |
 //! | [`time`] | integration time | TIME_OUT_OF_RANGE, INVALID |
 //! | [`denoise`] | distance | |
 //! | [`distance`] | distance | in the loop: DISTANCE_OUT_OF_RANGE, INVALID |

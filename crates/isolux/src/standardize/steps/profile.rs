@@ -1,4 +1,4 @@
-//! The step that takes the illumination profile out: a factor on the multipliers of a block.
+//! The step that removes the effect of the illumination profile: a factor on the multipliers of a block.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
 use crate::terms::profile::ProfileGains;
 
-/// Computes the multipliers of the whole image once. `best` uses the profile that the calibration holds for this image
-/// format; the paper knows none.
+/// Plans the step and computes the multipliers of the whole image. `best` uses the profile if the calibration holds
+/// one for this shape of frames; the method `paper` uses none.
 ///
 /// # Errors
 /// [`PlanError`] when it was asked for by name and cannot be done.
@@ -42,7 +42,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<ProfileGains>, Pl
     Ok(Some(planned))
 }
 
-/// Refuses frames of another format than the profile's.
+/// Refuses frames of another shape than the profile's.
 ///
 /// # Errors
 /// [`StandardizeError::ProfileFormat`].

@@ -12,13 +12,14 @@ use crate::terms::response::{
     PlannedAmplitude, PlannedBins, PlannedIntensity, PlannedPixels, Response, ResponseTier, ScalarResponse,
 };
 
-/// What the step does: one multiplier over time, or a correction of each pixel before `t_ref / t`.
+/// What the step does: a multiplier over the integration time, or a saturation correction of each pixel before
+/// `t_ref / t`.
 pub(crate) enum PlannedResponse {
     Scalar(ScalarResponse),
     PerPixel(SaturationCorrection),
 }
 
-/// Plans the tier that was asked for, or the best one, and says in words what it does.
+/// Plans the tier that was asked for, or the best one; the text records what it does.
 ///
 /// # Errors
 /// [`PlanError`] when calibration or recording lack what the tier needs.
@@ -39,7 +40,7 @@ pub(crate) fn plan(planner: &Planner<'_>, reference_us: f64) -> Result<(PlannedR
     Ok((planned, words))
 }
 
-/// `None` where the tier was not fitted.
+/// The plan of one tier; `None` where the tier was not fitted.
 fn of_tier(response: &Response, tier: ResponseTier, reference_us: f64) -> Option<(PlannedResponse, String)> {
     let (correction, words) = match tier {
         ResponseTier::Scalar => {
@@ -80,7 +81,8 @@ fn best_tier(planner: &Planner<'_>, response: &Response) -> Option<ResponseTier>
     response.tiers().find(|tier| planner.traits.channels.contains(tier.channels()))
 }
 
-/// True where the fill of each pixel is measured, which no table over time can know.
+/// True when the recording and the calibration allow a tier that measures the fill of each pixel, which no table
+/// over time does.
 pub(crate) fn measures_the_fill(planner: &Planner<'_>) -> bool {
     let response = planner.calibration.and_then(|c| c.terms.response.as_ref());
     let tier = response.and_then(|response| best_tier(planner, response));
@@ -114,10 +116,10 @@ pub(crate) struct Corrected {
     distance_m: Plane<f32>,
 }
 
-/// The value of a pixel whose fill was not measured: not saturated, but no value either.
+/// The value of a pixel whose fill was not measured: the pixel is not saturated, but has no value.
 const UNKNOWN: Option<f32> = Some(f32::NAN);
 
-/// What became of a frame.
+/// The corrected planes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Repaired {
     Amplitude,
@@ -131,7 +133,7 @@ impl Default for Corrected {
 }
 
 impl Corrected {
-    /// Bytes that it holds.
+    /// Bytes that it has allocated.
     pub(crate) fn bytes(&self) -> usize {
         bytes(&self.amplitude) + self.distance_m.bytes()
     }
@@ -144,8 +146,9 @@ impl Corrected {
         &self.distance_m
     }
 
-    /// Corrects `frame`. Measured pixels beyond the range, or saturated ones, become SATURATED and INVALID: nothing
-    /// tells what their linear value is. Allocates only when the shape differs from that of the last frame.
+    /// Corrects `frame`. Measured pixels that are saturated or beyond the fitted range become SATURATED and
+    /// INVALID, because their linear value cannot be determined. Allocates only when the shape differs from that of
+    /// the last frame.
     ///
     /// # Errors
     /// [`StandardizeError`] when the frame lacks the channel or the time, or is not of the map's shape.
@@ -175,7 +178,7 @@ impl Corrected {
         Ok(Repaired::Amplitude)
     }
 
-    /// By the integration time, in the scene of the sweep.
+    /// Corrects by the integration time, for the scene of the sweep only.
     fn by_time(
         &mut self,
         planned: &PlannedPixels,
@@ -196,7 +199,7 @@ impl Corrected {
                 let times_us = map.values();
                 each(&mut self.amplitude, flags, |i| match f64::from(times_us[i]) {
                     time_us if time_us > 0.0 => planned.linearise(i, amplitude[i], time_us),
-                    // The time step says of a pixel without a time that it has none.
+                    // The time step flags pixels without a time.
                     _ => Some(amplitude[i]),
                 });
             }
@@ -204,7 +207,7 @@ impl Corrected {
         Ok(())
     }
 
-    /// By the raw bins, which tell the distance too.
+    /// Corrects amplitude and distance by the raw bins.
     fn by_bins(
         &mut self,
         planned: &PlannedBins,
@@ -227,11 +230,11 @@ impl Corrected {
         repaired.copy_from_slice(delivered);
         each(&mut self.amplitude, flags, |i| {
             let Some((amplitude, shift_m)) = linear(i) else {
-                // Clipped bins tell no distance that neighbours could be smoothed with.
+                // Clipped bins give a wrong distance, which must not enter the smoothing of neighbours.
                 repaired[i] = f32::NAN;
                 return None;
             };
-            // What is no distance must not become one.
+            // An invalid distance must stay invalid.
             if delivered[i] > 0.0 {
                 repaired[i] += shift_m;
             }
@@ -241,7 +244,7 @@ impl Corrected {
     }
 }
 
-/// Writes the corrected value of every measured pixel, where there is one.
+/// Writes the corrected value of every measured pixel that has one; the others become SATURATED and INVALID.
 fn each(amplitude: &mut [f32], flags: &mut [PixelFlags], mut linear: impl FnMut(usize) -> Option<f32>) {
     for (index, (value, flags)) in amplitude.iter_mut().zip(flags).enumerate() {
         if flags.contains(PixelFlags::INVALID) {

@@ -1,11 +1,12 @@
-//! The predicted standard deviation of each standardized pixel, and the bias that the noise of the distance brings.
+//! The predicted standard deviation of each standardized pixel, and the bias that the noise of the distance causes.
 //!
-//! With the multiplier s(d), amplitude and distance errors independent of each other (methods, sections 1 and 5):
-//! `σ_A′² = s² σ_a² + (A² + σ_a²)(s′² σ_d² + ½ s″² σ_d⁴)`, and the mean is `½ A s″ σ_d²` too high, which is taken off the
-//! value. All other multipliers only scale. `σ_d = c σ_a / (4π f a)`, less what denoising has taken away.
+//! With the multiplier s(d), and errors of amplitude and distance that are independent of each other (methods,
+//! sections 1 and 5): `σ_A′² = s² σ_a² + (A² + σ_a²)(s′² σ_d² + ½ s″² σ_d⁴)`. The mean is too high by
+//! `½ A s″ σ_d²`, which is subtracted from the value. All other multipliers only scale. `σ_d = c σ_a / (4π f a)`,
+//! reduced by the denoising.
 //!
-//! Errors are taken for normal and the value for its own expectation, which holds from a signal-to-noise ratio of
-//! about 5: below, an amplitude is Rician (too high by `σ_a²/2a`) and a phase no longer normal.
+//! Errors are assumed to be normal, and the value to equal its own expectation. This holds from a signal-to-noise
+//! ratio of about 5 on: below, an amplitude is Rician (too high by `σ_a²/2a`) and the phase is no longer normal.
 
 use crate::calibration::Calibration;
 use crate::choice::SigmaStep;
@@ -18,7 +19,7 @@ use crate::standardize::report::{Note, PlanError};
 use crate::terms::noise::AmplitudeNoise;
 use crate::terms::{DistanceLaw, NoiseModel};
 
-/// What the prediction rests on.
+/// What the prediction is computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SigmaPlan {
     pub(crate) noise: NoiseModel,
@@ -28,7 +29,7 @@ pub(crate) struct SigmaPlan {
     pub(crate) needed: Channels,
 }
 
-/// Plans the prediction where the noise is known; `distance_scales` says whether a step scales by the distance.
+/// Plans the prediction where the noise is known; `distance_scales` is true when a step scales by the distance.
 ///
 /// # Errors
 /// [`PlanError`] when it was asked for by name and the noise is not known or impossible.
@@ -72,21 +73,21 @@ pub(crate) fn plan(planner: &mut Planner<'_>, distance_scales: bool) -> Result<O
     Ok(Some(SigmaPlan { noise: NoiseModel { by_intensity, ..noise }, unit_noise_m, needed }))
 }
 
-/// Largest share of a value that is taken off it: where the noise of the distance is so large, the second order
-/// means nothing any more.
+/// Largest share of a value that is subtracted as bias: where the noise of the distance is larger, the second-order
+/// formula is not valid.
 const LARGEST_BIAS: f32 = 0.25;
 
-/// What the prediction for one frame rests on.
+/// What the prediction for one frame is computed from.
 #[derive(Clone, Copy)]
 pub(crate) struct Predictor<'a> {
     frame: &'a Frame,
-    /// As the response leaves it.
+    /// Saturation-corrected where the chain does that.
     amplitude: &'a [f32],
     light: Light<'a>,
     /// σ_d in m of a pixel of signal-to-noise ratio 1.
     unit_noise_m: f32,
     law: &'a DistanceLaw,
-    /// Share of the variance of each distance that is left; empty: all of it.
+    /// Variance of each distance over that of the delivered one; empty when nothing was denoised.
     variance_left: &'a [f32],
 }
 
@@ -172,7 +173,7 @@ impl<'a> Predictor<'a> {
         Self { variance_left, ..self }
     }
 
-    /// Writes the σ of one block, and takes the bias off its values. `start` is the block's first pixel.
+    /// Writes the σ of one block, and subtracts the bias from its values. `start` is the block's first pixel.
     pub(crate) fn predict(&self, start: usize, distance_m: &[f32], values: &mut [f32], sigma: &mut [f32]) {
         let count = values.len();
         let amplitude = &self.amplitude[start..start + count];
@@ -203,8 +204,8 @@ fn fill_signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out:
     }
 }
 
-/// From the variance to `σ_a²/a²`, both of the linear amplitude: shot noise is that of the light, whatever the well
-/// keeps of it.
+/// Turns the variance into `σ_a²/a²`, both of the linear amplitude: shot noise follows from the light, not from the
+/// saturated amplitude.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
 fn relative_noise(amplitude: &[f32], variance: &mut [f32]) {
     for (variance, &a) in variance.iter_mut().zip(amplitude) {
@@ -235,7 +236,7 @@ fn propagate(block: Propagated<'_>, values: &mut [f32], sigma: &mut [f32]) {
         let bias = 0.5 * curvature[i] * distance;
         let port = slope[i] * slope[i] * distance + 2.0 * bias * bias;
         let relative = (noise[i] + (1.0 + noise[i]) * port).sqrt();
-        // Comparisons that a NaN fails: what is unknown changes no value.
+        // NaN fails both comparisons: an unknown bias changes no value.
         let bias = if bias > LARGEST_BIAS { LARGEST_BIAS } else { bias };
         let bias = if bias < -LARGEST_BIAS { -LARGEST_BIAS } else { bias };
         let bias = if bias.is_nan() { 0.0 } else { bias };

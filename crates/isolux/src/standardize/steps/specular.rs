@@ -14,7 +14,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Option<SpecularRule> {
     Some(rule)
 }
 
-/// Limits the highlights of a frame; the cutoff, where the rule found one.
+/// Limits the highlights of a frame. Returns the cutoff, DN; `None` when the rule found none.
 pub(crate) fn limit(
     rule: SpecularRule,
     out: &mut Standardized,

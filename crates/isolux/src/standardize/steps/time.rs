@@ -1,4 +1,4 @@
-//! The step that takes the integration time out: one multiplier per frame, or one per pixel.
+//! The step that removes the effect of the integration time: one multiplier per frame, or one per pixel.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub(crate) enum TimePlan {
     None,
 }
 
-/// Decides the multiplier over integration time, and what is done to the amplitude before.
+/// Plans the multiplier over the integration time, and the saturation correction before it.
 ///
 /// # Errors
 /// [`PlanError`] when something asked for by name cannot be done.
@@ -64,7 +64,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
     Ok((plan, correction))
 }
 
-/// The time step of the method; notes what `best` goes without.
+/// The time step of the method; adds a note when `best` has no term for it.
 fn default_step(planner: &mut Planner<'_>) -> TimeStep {
     match (planner.choice.method, planner.calibration) {
         (Method::Paper, _) => TimeStep::Lut,
@@ -99,7 +99,7 @@ impl TimeGain<'_> {
     }
 }
 
-/// The same, and how many of the measured pixels have none.
+/// The multipliers of a frame, and how many measured pixels are outside the fitted range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimeGains<'a> {
     pub(crate) gain: TimeGain<'a>,
@@ -109,9 +109,9 @@ pub(crate) struct TimeGains<'a> {
 /// How many measured pixels of a frame the table does not cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Uncovered {
-    /// Above the range, or unknown.
+    /// Time above the range, or unknown.
     pub(crate) refused: usize,
-    /// Below the range.
+    /// Time below the range.
     pub(crate) extrapolated: usize,
 }
 
@@ -128,7 +128,7 @@ pub(crate) fn gains<'a>(
     memory: &'a mut Vec<f32>,
     flags: &mut [PixelFlags],
 ) -> Result<TimeGains<'a>, StandardizeError> {
-    // Also for frames that need none: the next one may, and must not allocate.
+    // Also for frames that need no multiplier per pixel: the next frame may, and must not allocate.
     memory.resize(frame.shape().pixels(), f32::NAN);
     let mut uncovered = Uncovered::default();
     let gain = match (plan, &frame.integration_time_us) {
@@ -157,7 +157,7 @@ pub(crate) fn gains<'a>(
 }
 
 impl Uncovered {
-    /// Flags one pixel; counts it where it was a measurement so far.
+    /// Flags one pixel; counts it if it was a measurement until now.
     fn flag(&mut self, flags: &mut PixelFlags, flag: PixelFlags) {
         let measured = !flags.contains(PixelFlags::INVALID);
         let refused = flag.contains(PixelFlags::INVALID);

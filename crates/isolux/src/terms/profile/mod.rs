@@ -2,8 +2,8 @@
 //! `ln v(x, y) = c₁ r² + c₂ r⁴ + Σ c_kl B_k(x) B_l(y)`, `v(origin) = 1`; x and y from the principal point in units of the
 //! half diagonal, B cubic B-splines on equal intervals, 8 along a row and 6 along a column.
 //!
-//! The profile holds where the target was seen. A pixel elsewhere gets the value of the last supported place on the way
-//! from the origin to it, and a flag.
+//! The profile is valid (supported) where the target was seen. A pixel elsewhere gets the value of the last
+//! supported place on the line from the origin to the pixel, and is flagged.
 
 mod gains;
 mod map;

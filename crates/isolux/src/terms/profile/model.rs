@@ -7,13 +7,14 @@ use crate::frame::Shape;
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, MULTIPLIER_LIMITS, Source};
 
-/// Illumination profile of one camera at one image format.
+/// Illumination profile of one camera at one shape of images.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "ProfileFile", into = "ProfileFile")]
 pub struct Profile {
     /// Version of this term's parameters.
     pub version: u32,
-    /// The profile; it holds for no other image format. Its fields stand beside the others in the calibration file.
+    /// The profile; valid for images of its shape only. In the calibration file, its fields stand beside the
+    /// others.
     pub map: Map,
     /// Where it was seen: a map of 12 rows of 16 cells, `#` where it holds.
     pub support: Vec<String>,

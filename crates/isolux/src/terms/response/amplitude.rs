@@ -1,9 +1,9 @@
-//! Tier T1, `amplitude`: a curve from amplitude to linear amplitude. It needs no other channel, and knows nothing of
-//! ambient light: two pixels of one amplitude may be compressed unlike. Fitted where the light is mostly the camera's
-//! own, it holds there.
+//! Tier T1, `amplitude`: a curve from amplitude to saturation-corrected amplitude, both DN. It needs no other
+//! channel, but ignores ambient light: two pixels of the same amplitude may be saturated differently. It is valid
+//! where the light is mostly the camera's own, as in its sweep.
 //!
-//! `ln(A_lin / A) = Σ c_k max(0, ln A − u_k)`, all c_k ≥ 0: never below 1, rising and steepening. None of the hinges lies
-//! on the two lowest knots, which fixes the gauge: what is dim is linear (methods, section 2).
+//! `ln(A_lin / A) = Σ c_k max(0, ln A − u_k)`, all c_k ≥ 0: the correction is never below 1 and grows ever faster.
+//! No hinge lies on the two lowest knots, which makes dim amplitudes linear (methods, section 2).
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, Source, root_mean_square};
 
-/// Linear amplitude by amplitude.
+/// Saturation-corrected amplitude as a function of the amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AmplitudeResponse {

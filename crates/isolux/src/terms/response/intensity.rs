@@ -1,10 +1,11 @@
-//! Tier T2, `intensity`: the DC image tells how full the well is, whatever the light.
+//! Tier T2, `intensity`: the DC image shows how full the well is, whatever the light.
 //!
-//! The spec's `A_lin = A / f′(f⁻¹(O))` holds for a small modulation only: with a contrast of 0.5 it is 4 % off at a fill
-//! of 0.8 and 15 % near the clip, because the highest bin is compressed far more than the mean. Intensity and amplitude
-//! together are the four bins but for one number: with the phase at π/8 (that of the mean 4φ ripple; the ripple itself
-//! is at most 2–5 %), `A_k = O + A cos(φ − kπ/2) ± e`, and e is what makes the inverted bins a cosine again,
-//! `x_1 + x_3 = x_2 + x_4`. Where the phase is known from the distance, this is exactly the tier of the raw bins.
+//! `A_lin = A / f′(f⁻¹(O))`, O the intensity, is valid for a small modulation only: with a contrast of 0.5 it is 4
+//! % off at a fill of 0.8 and 15 % near the clip, because the highest bin saturates far more than the mean.
+//! Intensity and amplitude together are the four bins but for one number: with the phase at π/8 (that of the mean
+//! 4φ ripple; the ripple itself is at most 2–5 %), `A_k = O + A cos(φ − kπ/2) ± e`, and e is what makes the
+//! inverted bins a cosine again, `x_1 + x_3 = x_2 + x_4`. Where the phase is known from the distance, this is
+//! exactly the tier of the raw bins.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 
@@ -19,7 +20,7 @@ use super::well::InverseTable;
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, Source};
 
-/// The well as the DC image shows it.
+/// The full well, fitted to intensity and amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntensityResponse {

@@ -1,11 +1,12 @@
-//! `response`: what is left of the amplitude as the pixel's well fills, with up to five tiers of evidence.
+//! `response`: corrects amplitudes for saturation, in up to five tiers that differ in the channel that shows the
+//! fill of a pixel.
 //!
-//! A pixel compresses by its total charge, ambient light included, not by its amplitude:
-//! `A_lin = A / f′(x)`, x its linear well fill (eq. 3 of Stürmer, Penne and Hornegger 2008; methods, section 2). How
-//! well x is known depends on what the camera delivers; each tier is fitted where an exposure sweep offers its
-//! evidence, and each stands alone.
+//! A pixel saturates by its total charge, ambient light included, not by its amplitude: `A_lin = A / f′(x)`, with x
+//! the fill that its well would have without saturation (eq. 3 of Stürmer, Penne and Hornegger 2008; methods,
+//! section 2). How precisely x is known depends on the channels of the camera. Each tier is fitted when an exposure
+//! sweep has its channels, independently of the others.
 //!
-//! | tier | evidence | takes out |
+//! | tier | the fill is known from | corrects |
 //! |---|---|---|
 //! | [`ScalarResponse`] | mean of the image | what a lookup table does |
 //! | [`AmplitudeResponse`] | amplitude of the pixel | compression without ambient light |
@@ -13,9 +14,9 @@
 //! | [`IntensityResponse`] | DC image | compression by any light |
 //! | [`PhaseSampleResponse`] | the four raw bins | the same, without approximation, and that of the distance |
 //!
-//! A linearised amplitude is corrected for saturation: it is what a pixel would deliver that never saturates. Times
-//! `t_ref / t` it is what such a pixel would deliver at the reference time. So the multiplier of a pixel that saturates
-//! at the reference time is not 1.
+//! A saturation-corrected (linearised) amplitude, DN, is what an ideal pixel that never saturates would deliver.
+//! Times `t_ref / t`, it is what that pixel would deliver at the reference time. A pixel that saturates at the
+//! reference time is therefore corrected there too: its multiplier is not 1.
 
 mod amplitude;
 mod fill_time;
@@ -49,7 +50,7 @@ use super::check::{Check, ParameterError, Parameters};
 use crate::frame::Channels;
 use crate::names::named;
 
-/// Everything that is known of the response, tier by tier.
+/// The fitted tiers of the response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Response {
@@ -94,7 +95,7 @@ pub enum ResponseError {
          until the brightest pixels saturate"
     )]
     NoCompression,
-    /// A map of the image would not fit into a calibration file.
+    /// The image is too large for a map in a calibration file.
     #[error(
         "{pixels} pixels found, at most {} expected: a map of them is too large for a calibration file",
         PixelResponse::MOST_PIXELS
@@ -138,7 +139,7 @@ impl Response {
     /// Parameter version that this library writes.
     pub const VERSION: u32 = 1;
 
-    /// The tiers that were fitted and hold for any scene, the best first.
+    /// The fitted tiers that are valid for any scene, the best first.
     pub fn tiers(&self) -> impl Iterator<Item = ResponseTier> {
         let tiers = [
             self.phase_samples.as_ref().map(|_| ResponseTier::PhaseSamples),

@@ -1,4 +1,5 @@
-//! Tier T3, `phase_samples`: every raw bin is inverted before it is demodulated, which repairs the phase too.
+//! Tier T3, `phase_samples`: every raw bin is corrected for saturation before demodulation, which corrects the
+//! phase, and so the distance, too.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,7 @@ pub struct PhaseSampleResponse {
     pub clip_dn: Option<f64>,
     /// Largest bin that is inverted, DN; a pixel with a larger one is refused.
     pub largest_dn: f64,
-    /// Modulation frequency, Hz: with it the distance is repaired too.
+    /// Modulation frequency, Hz; if it is known, the distance is corrected too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modulation_frequency_hz: Option<f64>,
     /// What it was fitted on.

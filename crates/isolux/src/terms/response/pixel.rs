@@ -1,7 +1,7 @@
 //! Tier T1b, `pixel`: a fill time for every pixel of one static scene, from its amplitudes at several times.
 //!
-//! `ln A_ij = e_i + ln t_j + ln f′(t_j/τ_i)`, one softness for all (methods, section 2). τ_i holds the light of that
-//! scene, ambient light included: it is right for a fixed camera before a scene that stays, and wrong for any other.
+//! `ln A_ij = e_i + ln t_j + ln f′(t_j/τ_i)`, with one softness for all pixels (methods, section 2). τ_i depends on
+//! the light of that scene, ambient light included: it is valid for a fixed camera and a static scene only.
 
 use serde::{Deserialize, Serialize};
 
@@ -146,8 +146,8 @@ pub(crate) struct PlannedPixels {
 }
 
 impl PlannedPixels {
-    /// Linear amplitude of pixel `index`; `None` where it is fuller, or the time longer, than the fit knows: a pixel that
-    /// was not seen to be compressed may be later.
+    /// Saturation-corrected amplitude (DN) of pixel `index`. `None` where the fill or the time is beyond the fitted
+    /// range: a pixel that did not saturate there may do so later.
     pub(crate) fn linearise(&self, index: usize, amplitude_dn: f32, time_us: f64) -> Option<f32> {
         let fill = time_us / self.full_well_time_us[index];
         if fill.is_nan() || fill > self.largest_fill || time_us > self.longest_time_us {

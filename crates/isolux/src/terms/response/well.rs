@@ -1,4 +1,5 @@
-//! The soft full well: what a pixel keeps of the charge that it receives, both in units of the well W.
+//! The soft full well: the charge that a pixel keeps as a function of the charge that it receives, both in units of
+//! the well W.
 //!
 //! `f(x) = x / (1 + x^p)^(1/p)`, x the linear fill (methods, section 1). Its slope f′ is what is left of a small
 //! modulation, `a / a_lin ≈ f′(x)`: eq. 3 of Stürmer, Penne and Hornegger (2008).

@@ -1,9 +1,9 @@
 //! From reference decays to a [`Spline`].
 //!
-//! A scalar table over integration time multiplies each decay by one number, which the decay's level takes up: the
-//! fit is the same with it and without. What such a table says of compression (S(t) t / t_ref) is that of its own
-//! wall, at one amplitude per time; the board's positions fill the pixels otherwise, so no position is corrected by
-//! it. Compressed positions are outliers to the majority of the times that see the same distance uncompressed.
+//! No position is corrected by the table over integration time. The table multiplies each decay by one number,
+//! which the decay's level absorbs: the fit is the same with and without it. The saturation that the table contains
+//! (S(t) t / t_ref) is that of its own sweep, at one amplitude per time, not that of the positions of this target.
+//! Saturated positions are outliers to the other integration times, at which the same distance is not saturated.
 
 use super::error::LEAST_POSITIONS;
 use super::least_squares::{LeastSquares, Model, count_positions};
