@@ -47,10 +47,7 @@ pub fn plan_with(
 }
 
 /// The noise of the amplitude that a recording itself shows.
-///
-/// # Errors
-/// [`PipelineError::NoNoise`] where it shows none, and those of reading.
-pub fn estimate_noise(
+fn estimate_noise(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<NoiseModel, PipelineError> {
