@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::process::ExitCode;
 
 use isolux::standardize::PlanError;
+use isolux_experiments::ExperimentError;
 use isolux_pipeline::PipelineError;
 
 use crate::advice;
@@ -61,6 +62,15 @@ impl From<isolux_camera::CameraError> for Failure {
 impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Self {
         Self { message: advice::with(&error, error.advice()), exit_code: exit_code(&error) }
+    }
+}
+
+impl From<ExperimentError> for Failure {
+    fn from(error: ExperimentError) -> Self {
+        match error {
+            ExperimentError::Pipeline(error) => error.into(),
+            error => Self::data(error),
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::source::FrameSource;
 ///
 /// # Errors
 /// Those of the source and of `visit`; [`PipelineError::Interrupted`] once the observer has cancelled.
-pub fn for_each(
+pub(crate) fn for_each(
     source: &mut dyn FrameSource,
     wanted: Channels,
     work: Work,

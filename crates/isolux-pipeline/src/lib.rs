@@ -1,26 +1,25 @@
 //! Recordings in, results out: the library between files and the core of isolux.
 //!
-//! | module | what goes in | what comes out |
-//! |---|---|---|
-//! | [`mod@plan`] | a choice of steps, a recording | a planned chain |
-//! | [`mod@standardize`] | a recording, a chain | standardized frames, in order, in a [`standardize::FrameSink`] |
-//! | [`brackets`] | a recording | the groups of frames that are merged into one |
-//! | [`mod@calibrate`] | sweeps, targets, scenes | a calibration |
-//! | [`mod@assess`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain |
-//! | [`mod@diagnose`] | a recording | whether it is raw, corrected, clipped |
-//! | [`mod@overview`] | a recording | its channels, times and ranges of values |
-//! | [`figures`], [`page`] | an assessment | its figures in words, and a page about it |
-//! | [`simulate`] | a simulated scene | a recording |
+//! | call | what goes in | what comes out | more in |
+//! |---|---|---|---|
+//! | [`plan()`] | a choice of steps, a recording | a planned chain | |
+//! | [`standardize()`] | a recording, a chain | standardized frames, in order, in a [`standardize::FrameSink`] | [`mod@standardize`] |
+//! | [`Brackets::plan`] | a recording | the groups of frames that are merged into one | |
+//! | [`calibrate()`] | sweeps, targets, scenes | a calibration | [`mod@calibrate`] |
+//! | [`assess()`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain | [`mod@assess`] |
+//! | [`diagnose()`] | a recording | whether it is raw, corrected, clipped | |
+//! | [`overview()`] | a recording | its channels, times and ranges of values | [`mod@overview`] |
+//! | [`page::page`] | an assessment | a page about it, or its figures in words | [`page`], [`figures`] |
+//! | [`simulate::record`] | a simulated scene | a recording | [`simulate`] |
 //!
-//! A recording is a [`FrameSource`], as are frames in memory and those of the simulated camera. The caller passes
-//! an [`Observer`], which receives progress and remarks and may cancel. This crate does not print, parse a command
-//! line or end the process.
+//! Recordings are [`FrameSource`]s, as are frames in memory ([`FramesInMemory`]) and those of the simulated camera
+//! ([`simulate::SimulatedFrames`]). The caller passes an [`Observer`], which receives
+//! progress and remarks and may cancel. This crate does not print, parse a command line or end the process.
 //!
 //! ```
 //! use isolux::Choice;
 //! use isolux_camera::{CameraModel, Scene, Simulation};
-//! use isolux_pipeline::standardize::{NativeSink, StandardizeOptions, standardize};
-//! use isolux_pipeline::{Observer, Remark, Work, plan};
+//! use isolux_pipeline::{NativeSink, Observer, Remark, StandardizeOptions, Work, plan, standardize};
 //!
 //! /// Says on a terminal what goes on.
 //! struct Terminal;
@@ -50,26 +49,26 @@
 //! ```
 
 pub mod assess;
-pub mod brackets;
+mod brackets;
 pub mod calibrate;
-pub mod diagnose;
-pub mod error;
+mod diagnose;
+mod error;
 pub mod figures;
-pub mod frames;
-pub mod observer;
+mod frames;
+mod observer;
 pub mod overview;
 pub mod page;
-pub mod plan;
-pub mod remark;
+mod plan;
+mod remark;
 pub mod simulate;
-pub mod source;
+mod source;
 pub mod standardize;
 
 pub use assess::{AssessOptions, Assessment, assess};
 pub use brackets::Brackets;
 pub use calibrate::{CalibrationPaths, CalibrationSources, calibrate};
 pub use diagnose::diagnose;
-pub use error::PipelineError;
+pub use error::{FrameError, PipelineError};
 pub use observer::{Observer, Unobserved, Work};
 pub use overview::{Overview, overview};
 pub use plan::{plan, plan_with};

@@ -47,10 +47,7 @@ pub fn plan_with(
 }
 
 /// Estimates the noise of the amplitude from a recording.
-///
-/// # Errors
-/// [`PipelineError::NoNoise`] where it cannot be estimated, and those of reading.
-pub fn estimate_noise(
+fn estimate_noise(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<NoiseModel, PipelineError> {

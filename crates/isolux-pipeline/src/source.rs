@@ -163,10 +163,7 @@ impl FrameSource for FramesInMemory<'_> {
 }
 
 /// Opens recordings as sources of frames.
-///
-/// # Errors
-/// [`PipelineError::Recording`] for a path that holds none.
-pub fn open_all(paths: &[PathBuf]) -> Result<Vec<Box<dyn FrameSource>>, PipelineError> {
+pub(crate) fn open_all(paths: &[PathBuf]) -> Result<Vec<Box<dyn FrameSource>>, PipelineError> {
     let open = |path: &PathBuf| {
         let recording = isolux_io::open(path)?;
         Ok(Box::new(recording) as Box<dyn FrameSource>)

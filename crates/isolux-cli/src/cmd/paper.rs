@@ -10,7 +10,7 @@ pub(crate) fn run(args: &PaperArgs) -> Outcome {
     let progress = terminal::spinner();
     let page = isolux_experiments::paper::page(args.seed, &mut |step| progress.set_message(step.to_owned()));
     progress.finish_and_clear();
-    let page = page.map_err(Failure::data)?;
+    let page = page?;
     let written = isolux_report::write_report(&page, &args.output, "index.html").map_err(Failure::data)?;
     let blocks = page.sections.iter().flat_map(|section| &section.blocks);
     let claims =

@@ -62,6 +62,8 @@ impl Lab {
     /// # Errors
     /// [`ExperimentError`], which no seed should bring about.
     pub fn new(seed: u64, progress: &mut dyn FnMut(&str)) -> Result<Self, ExperimentError> {
+        // The sweeps are measured here and not by the pipeline, since the page shows their means too: one pass over the
+        // frames serves both. Both stages at once, since the paper's terms need no linear amplitudes.
         let settings = CalibrateSettings::default();
         progress("wall over the integration times");
         let simulated = simulation("wall-sweep", seed)?;

@@ -24,28 +24,40 @@ pub struct Chain {
     pub name: &'static str,
     /// What it may read.
     pub evidence: Evidence,
-    time: TimeStep,
-    distance: DistanceStep,
-    denoise: DenoiseStep,
+    steps: Steps,
 }
 
-const fn chain(name: &'static str, time: TimeStep, distance: DistanceStep) -> Chain {
-    Chain { name, evidence: Evidence::Amplitude, time, distance, denoise: DenoiseStep::None }
+/// Where the steps of a chain come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Steps {
+    /// [`Choice::textbook`].
+    Textbook,
+    /// [`Choice::paper`].
+    Paper,
+    /// The textbook's, with another step for the distance.
+    TextbookBut(DistanceStep),
+    /// None.
+    Nothing,
+    /// This one for the time, the wiener rule and the spline.
+    Ours(TimeStep),
+}
+
+const fn chain(name: &'static str, steps: Steps) -> Chain {
+    Chain { name, evidence: Evidence::Amplitude, steps }
 }
 
 const fn ours(name: &'static str, time: TimeStep, evidence: Evidence) -> Chain {
-    let denoise = DenoiseStep::Smooth(DenoiseRule::Wiener);
-    Chain { evidence, denoise, ..chain(name, time, DistanceStep::Spline) }
+    Chain { name, evidence, steps: Steps::Ours(time) }
 }
 
 /// Nothing but the camera's image.
-pub const RAW: Chain = chain("raw", TimeStep::None, DistanceStep::None);
+pub const RAW: Chain = chain("raw", Steps::Nothing);
 /// What one writes in NumPy.
-pub const TEXTBOOK: Chain = chain("A d²/t", TimeStep::Linear, DistanceStep::Square);
+pub const TEXTBOOK: Chain = chain("A d²/t", Steps::Textbook);
 /// The paper's eq. 5 with linear time.
-pub const EQ5: Chain = chain("eq. 5, linear time", TimeStep::Linear, DistanceStep::Eq5);
+pub const EQ5: Chain = chain("eq. 5, linear time", Steps::TextbookBut(DistanceStep::Eq5));
 /// The paper's.
-pub const PAPER: Chain = chain("the paper (lut, cubic)", TimeStep::Lut, DistanceStep::Cubic);
+pub const PAPER: Chain = chain("the paper (lut, cubic)", Steps::Paper);
 /// Ours for cameras that deliver no more than amplitude and distance.
 pub const FROM_AMPLITUDE: Chain =
     ours("isolux, amplitude alone (lut, wiener, spline)", TimeStep::Lut, Evidence::Amplitude);
@@ -70,19 +82,34 @@ impl Chain {
     /// # Errors
     /// [`ExperimentError::Plan`] when the calibration lacks a term.
     pub fn plan(&self, held_out: &HeldOut) -> Result<Standardizer, ExperimentError> {
-        let choice = Choice {
-            time: Some(self.time),
-            distance: Some(self.distance),
-            denoise: Some(self.denoise),
-            specular: Some(SpecularStep::None),
-            ..Choice::default()
-        };
         let (calibration, besides) = match self.evidence {
             Evidence::Amplitude => (&held_out.from_amplitude, Channels::empty()),
             Evidence::Intensity => (&held_out.calibration, Channels::INTENSITY),
             Evidence::PhaseSamples => (&held_out.calibration, Channels::PHASE_SAMPLES),
         };
         let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
-        Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
+        Ok(Standardizer::plan(&self.steps.choice(channels), Some(calibration), channels)?)
+    }
+}
+
+impl Steps {
+    /// The steps for frames with these channels; highlights are left alone.
+    fn choice(self, channels: Channels) -> Choice {
+        let textbook = Choice::textbook(channels);
+        let choice = match self {
+            Self::Textbook => textbook,
+            Self::Paper => Choice::paper(),
+            Self::TextbookBut(distance) => Choice { distance: Some(distance), ..textbook },
+            Self::Nothing => {
+                Choice { time: Some(TimeStep::None), distance: Some(DistanceStep::None), ..textbook }
+            }
+            Self::Ours(time) => Choice {
+                time: Some(time),
+                denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
+                distance: Some(DistanceStep::Spline),
+                ..Choice::default()
+            },
+        };
+        Choice { specular: Some(SpecularStep::None), ..choice }
     }
 }

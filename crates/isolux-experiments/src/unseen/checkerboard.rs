@@ -1,12 +1,15 @@
 //! A checkerboard in many poses before a real camera: how much the amplitude of its white squares still varies over
 //! distance, tilt and place, in frames that the calibration has not seen.
 
-use isolux::calibrate::{CalibrateSettings, ExposureFit, Measurements, TargetSweep, label_windows};
-use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep};
+use isolux::calibrate::{CalibrateSettings, label_windows};
+use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep};
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use isolux::{
-    Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, RecordingTraits, Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, RecordingTraits, Shape,
+    Standardizer,
 };
+use isolux_io::RecordingInfo;
+use isolux_pipeline::{CalibrationSources, FramesInMemory, SourceFacts, Unobserved, calibrate};
 
 use crate::error::ExperimentError;
 
@@ -39,7 +42,7 @@ pub struct Spread {
     pub of: usize,
 }
 
-/// The steps of one row of the table; `None` of the calibration is textbook physics.
+/// The steps of one row of the table, with the calibration or without.
 struct Method {
     name: &'static str,
     calibrated: bool,
@@ -47,23 +50,20 @@ struct Method {
 }
 
 fn methods() -> [Method; 5] {
-    let choice = |distance, profile, angle| Choice {
-        time: Some(TimeStep::None),
+    let textbook = Choice {
         denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
-        distance: Some(distance),
-        profile: Some(profile),
-        angle: Some(angle),
-        specular: Some(SpecularStep::None),
-        ..Choice::default()
+        ..Choice::textbook(Channels::AMPLITUDE | Channels::DISTANCE)
     };
-    let (on, off) = (ProfileStep::On, ProfileStep::Off);
+    let fitted = Choice { distance: Some(DistanceStep::Spline), profile: Some(ProfileStep::On), ..textbook };
+    let by_angle = |choice: Choice| Choice { angle: Some(AngleStep::On), ..choice };
+    let raw = Choice { distance: Some(DistanceStep::None), ..textbook };
     let method = |name, calibrated, choice| Method { name, calibrated, choice };
     [
-        method("raw", false, choice(DistanceStep::None, off, AngleStep::Off)),
-        method("d²", false, choice(DistanceStep::Square, off, AngleStep::Off)),
-        method("d², Lambert", false, choice(DistanceStep::Square, off, AngleStep::On)),
-        method("spline, profile", true, choice(DistanceStep::Spline, on, AngleStep::Off)),
-        method("spline, profile, angle", true, choice(DistanceStep::Spline, on, AngleStep::On)),
+        method("raw", false, raw),
+        method("d²", false, textbook),
+        method("d², Lambert", false, by_angle(textbook)),
+        method("spline, profile", true, fitted),
+        method("spline, profile, angle", true, by_angle(fitted)),
     ]
 }
 
@@ -104,15 +104,15 @@ fn calibrate_without(
     frames: &[Frame],
     protocol: &Protocol,
     fold: usize,
-) -> Result<isolux::Calibration, ExperimentError> {
-    let settings = CalibrateSettings::default();
-    let mut sweep = TargetSweep::new("checkerboard", &settings, Some(protocol.intrinsics));
-    for (_, frame) in frames.iter().enumerate().filter(|(index, _)| index % FOLDS != fold) {
-        sweep.push(frame)?;
-    }
-    let mut measured = Measurements::default();
-    measured.add_target(sweep.finish());
-    Ok(ExposureFit::new(&settings, Vec::new())?.complete(None, measured)?.0)
+) -> Result<Calibration, ExperimentError> {
+    let others = frames.iter().enumerate().filter(|(index, _)| index % FOLDS != fold);
+    let shape = frames.first().map_or(Shape::new(0, 0), Frame::shape);
+    let info = RecordingInfo { intrinsics: Some(protocol.intrinsics.into()), ..RecordingInfo::default() };
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;
+    let facts = SourceFacts { info, ..SourceFacts::new("checkerboard", shape, channels) };
+    let others = FramesInMemory::new(facts, others.map(|(_, frame)| frame));
+    let sources = CalibrationSources { targets: vec![Box::new(others)], ..CalibrationSources::default() };
+    Ok(calibrate(&CalibrateSettings::default(), None, sources, &Unobserved)?.0)
 }
 
 /// Indices of the windows of 5×5 pixels inside the squares, all of whose pixels are measured, far enough.

@@ -1,14 +1,15 @@
 //! Cameras that no preset is like, calibrated from sweeps as a user would record them. What is measured on them
 //! afterwards are other frames than those of the fit.
 
-use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureFit, ExposureSweep, Measurements};
-use isolux::standardize::FrameLineariser;
-use isolux::{Calibration, Channels};
+use isolux::Calibration;
+use isolux::calibrate::CalibrateSettings;
 use isolux_camera::scene::run::RegisterRange;
 use isolux_camera::{CameraModel, Scene, Simulation};
+use isolux_pipeline::calibrate::measure;
+use isolux_pipeline::simulate::SimulatedFrames;
+use isolux_pipeline::{CalibrationSources, Unobserved};
 
 use crate::error::ExperimentError;
-use crate::measure::for_each;
 
 /// Seeds of the cameras, which no constant of the library was chosen on.
 pub const CAMERAS: [u64; 3] = [101, 102, 103];
@@ -40,33 +41,17 @@ impl HeldOut {
             modulation_frequency_hz: Some(model.modulation_frequency_hz),
             ..CalibrateSettings::default()
         };
-        let mut wall = ExposureSweep::new("wall-sweep", &settings);
-        for_each(&Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?, |_, simulated| {
-            Ok(wall.push(&simulated.frame)?)
-        })?;
-        let exposure = ExposureFit::new(&settings, vec![wall.finish()])?;
-        let channels = Channels::PHASE_SAMPLES | Channels::INTENSITY;
-        let mut lineariser =
-            exposure.response().and_then(|response| FrameLineariser::new(response, channels));
-        let mut board = DistanceSweep::new("board-distances", &settings);
-        let mut linear_board = board.clone();
-        let scene = Scene::builtin("board-distances")?;
-        for_each(&Simulation::new(cropped(&model), scene, FITTED)?, |_, simulated| {
-            board.push(&simulated.frame)?;
-            if let Some(lineariser) = &mut lineariser {
-                let mut frame = simulated.frame.clone();
-                lineariser.linearise(&mut frame)?;
-                linear_board.push(&frame)?;
-            }
-            Ok(())
-        })?;
-        let board = board.finish();
-        let (mut delivered, mut measured) = (Measurements::default(), Measurements::default());
-        delivered.add_distance_sweep(board.clone(), None);
-        measured.add_distance_sweep(board, lineariser.map(|_| linear_board.finish()));
+        let wall = Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?;
+        let board = Simulation::new(cropped(&model), Scene::builtin("board-distances")?, FITTED)?;
+        let sources = CalibrationSources {
+            exposure_sweeps: vec![Box::new(SimulatedFrames::new(&wall))],
+            distance_sweeps: vec![Box::new(SimulatedFrames::new(&board))],
+            ..CalibrationSources::default()
+        };
+        let measured = measure(&settings, sources, &Unobserved)?;
         let name = Some(model.name.clone());
-        let (from_amplitude, _) = exposure.clone().complete(name.clone(), delivered)?;
-        let (calibration, _) = exposure.complete(name, measured)?;
+        let (from_amplitude, _) = measured.of_delivered_amplitudes().fit(name.clone(), &Unobserved)?;
+        let (calibration, _) = measured.fit(name, &Unobserved)?;
         Ok(Self { model, calibration, from_amplitude })
     }
 }

@@ -10,6 +10,7 @@ pub mod figure;
 pub mod figures;
 pub mod held_out;
 mod noise_free;
+pub mod real_cameras;
 pub mod response;
 pub mod self_calibration;
 pub mod sigma;

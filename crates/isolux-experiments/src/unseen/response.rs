@@ -135,7 +135,8 @@ fn plan(
     Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
 }
 
-/// The reference time is one of the sweep's in the middle, which every camera's table covers.
+/// The reference time is one of the sweep's in the middle, which every camera's table covers. The sweep is measured here
+/// and not by the pipeline: its simulated frames do not flag clipped bins.
 fn calibrate(simulation: &Simulation, times_us: &[f64]) -> Result<Calibration, ExperimentError> {
     let reference = Reference { integration_time_us: times_us.get(6).copied(), ..Reference::default() };
     let settings = CalibrateSettings {

@@ -8,16 +8,21 @@ use std::time::{Duration, Instant};
 
 use isolux::calibrate::joint::{Factor, Finding};
 use isolux::calibrate::scene::SceneReport;
-use isolux::calibrate::{self, CalibrateSettings, ExposureFit, MotionFinding, MotionScout, SceneSweep};
+use isolux::calibrate::{CalibrateSettings, FitReport, MotionFinding};
 use isolux::terms::lut::LutAnswer;
 use isolux::{Calibration, Frame, Reference};
 use isolux_camera::{CameraModel, Scene, Simulation};
+use isolux_pipeline::simulate::SimulatedFrames;
+use isolux_pipeline::{CalibrationSources, FrameSource, FramesInMemory, SourceFacts, Unobserved, calibrate};
 
 pub use runs::RunKind;
 pub use spoil::Spoil;
 
 use crate::error::ExperimentError;
 use crate::measure::for_each;
+
+/// The recording, as messages name it.
+const RUN: &str = "run";
 
 /// Where the poses come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,39 +114,33 @@ pub fn measure(experiment: &Experiment) -> Result<SelfCalibration, ExperimentErr
         ..CalibrateSettings::default()
     };
     let start = Instant::now();
-    let (calibration, motion, report, warnings) = calibrate(&settings, camera, &frames)?;
+    let (calibration, fit) = calibrate_from(&settings, &simulation, &frames)?;
+    let elapsed = start.elapsed();
+    let missing = |missing| ExperimentError::Scene { scene: RUN, missing };
+    let report = fit.scene.ok_or(missing("a report"))?;
+    let motion = report.scenes.first().ok_or(missing("its motion"))?.motion;
     Ok(SelfCalibration {
-        elapsed: start.elapsed(),
+        elapsed,
         time: time(&calibration),
         distance: distance(&calibration, camera),
         profile: profile(&calibration, camera),
         angle_exponent: calibration.terms.angle.map(|angle| angle.exponent),
         motion,
         report,
-        warnings,
+        warnings: fit.warnings.iter().map(ToString::to_string).collect(),
         frames: frames.len(),
     })
 }
 
-type Calibrated = (Calibration, MotionFinding, SceneReport, Vec<String>);
-
-fn calibrate(
+fn calibrate_from(
     settings: &CalibrateSettings,
-    camera: &CameraModel,
+    simulation: &Simulation,
     frames: &[Frame],
-) -> Result<Calibrated, ExperimentError> {
-    let mut scout = MotionScout::default();
-    frames.iter().for_each(|frame| scout.push(frame));
-    let mut sweep = SceneSweep::new("run", settings, Some(camera.intrinsics), scout.verdict());
-    frames.iter().try_for_each(|frame| sweep.push(frame))?;
-    let seen = sweep.finish();
-    let motion = seen.motion;
-    let mut measured = calibrate::Measurements::default();
-    measured.add_scene(seen);
-    let (calibration, report) = ExposureFit::new(settings, Vec::new())?.complete(None, measured)?;
-    let warnings = report.warnings.iter().map(ToString::to_string).collect();
-    let scene = report.scene.ok_or(ExperimentError::Scene { scene: "run", missing: "a report" })?;
-    Ok((calibration, motion, scene, warnings))
+) -> Result<(Calibration, FitReport), ExperimentError> {
+    let facts = SourceFacts { name: RUN.to_owned(), ..SimulatedFrames::new(simulation).facts() };
+    let run = FramesInMemory::new(facts, frames);
+    let sources = CalibrationSources { scenes: vec![Box::new(run)], ..CalibrationSources::default() };
+    Ok(calibrate(settings, None, sources, &Unobserved)?)
 }
 
 /// Nothing saturates in these runs, so the amplitude is proportional to the time.

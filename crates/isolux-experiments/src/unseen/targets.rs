@@ -6,16 +6,17 @@
 //! noise-free linear amplitude. Frames in which fewer than 95 % of the labelled pixels are usable do not count: a pixel
 //! is usable where the camera delivers a value and its well compresses the amplitude by at most 2 %.
 
-use isolux::calibrate::{CalibrateSettings, ExposureFit, FitReport, Measurements, TargetSweep};
-use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep, SpecularStep, TimeStep};
+use isolux::calibrate::{CalibrateSettings, FitReport};
+use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep};
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use isolux::{
     Calibration, Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer,
 };
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
+use isolux_pipeline::simulate::SimulatedFrames;
+use isolux_pipeline::{CalibrationSources, FrameSource, Unobserved, calibrate};
 
 use crate::error::ExperimentError;
-use crate::measure::for_each;
 
 /// Scene that is calibrated with.
 const BOARD: &str = "target-board";
@@ -37,7 +38,7 @@ pub struct PatchFigures {
     pub floor: f64,
     /// 1.4826 MAD of the medians of patches, and of their floor.
     pub patch_robust: [f64; 2],
-    /// Standard deviation with the textbook steps t_ref/t and d² alone.
+    /// Standard deviation by the textbook's chain, t_ref/t and d².
     pub textbook: f64,
     /// Share of the labelled pixels that have a value.
     pub valid: f64,
@@ -56,11 +57,9 @@ pub fn calibrate_random(seed: u64) -> Result<(Calibration, FitReport), Experimen
         modulation_frequency_hz: Some(model.modulation_frequency_hz),
         ..CalibrateSettings::default()
     };
-    let mut sweep = TargetSweep::new(BOARD, &settings, Some(model.intrinsics));
-    for_each(&simulation, |_, simulated| Ok(sweep.push(&simulated.frame)?))?;
-    let mut measured = Measurements::default();
-    measured.add_target(sweep.finish());
-    Ok(ExposureFit::new(&settings, Vec::new())?.complete(Some(model.name.clone()), measured)?)
+    let targets: Vec<Box<dyn FrameSource + '_>> = vec![Box::new(SimulatedFrames::new(&simulation))];
+    let sources = CalibrationSources { targets, ..CalibrationSources::default() };
+    Ok(calibrate(&settings, Some(model.name.clone()), sources, &Unobserved)?)
 }
 
 /// Measures the patches before the random camera of this seed, with `calibration`, in every `step`-th frame of 135.
@@ -74,12 +73,7 @@ pub fn patches(seed: u64, calibration: &Calibration, step: usize) -> Result<Patc
         intrinsics: Some(simulation.model().intrinsics),
         ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
-    let textbook = Choice {
-        time: Some(TimeStep::Linear),
-        distance: Some(DistanceStep::Square),
-        specular: Some(SpecularStep::None),
-        ..Choice::default()
-    };
+    let textbook = Choice::textbook(traits.channels);
     let fitted = Choice {
         distance: Some(DistanceStep::Spline),
         profile: Some(ProfileStep::On),

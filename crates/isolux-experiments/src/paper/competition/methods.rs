@@ -1,6 +1,6 @@
 //! The competitors: a step over the integration time, a step over the distance.
 
-use isolux::standardize::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::standardize::{Choice, DistanceStep, SpecularStep, TimeStep};
 use isolux::{Calibration, Channels, Standardizer};
 
 use crate::error::ExperimentError;
@@ -68,11 +68,10 @@ impl Competitor {
     /// [`ExperimentError::Plan`], which a complete calibration does not bring about.
     pub(super) fn standardizer(self, calibration: &Calibration) -> Result<Standardizer, ExperimentError> {
         let choice = Choice {
-            method: Method::Paper,
             time: Some(self.time),
             distance: Some(self.distance),
             specular: Some(SpecularStep::None),
-            ..Choice::default()
+            ..Choice::paper()
         };
         let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
         Ok(Standardizer::plan(&choice, Some(calibration), channels)?)

@@ -1,14 +1,15 @@
 //! The lookup table under other light and before other walls.
 
-use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
+use isolux::calibrate::CalibrateSettings;
 use isolux::terms::lut::LutAnswer;
 use isolux_camera::scene::run::RegisterRange;
 use isolux_camera::scene::texture::Texture;
 use isolux_camera::{Scene, Simulation};
+use isolux_pipeline::simulate::SimulatedFrames;
+use isolux_pipeline::{CalibrationSources, Unobserved, calibrate};
 use isolux_report::page::{Block, Cell, Chart, Claim, Mark, MarkAxis, Scale, Series, Stroke, Table, Verdict};
 
 use crate::error::ExperimentError;
-use crate::measure::for_each;
 use crate::paper::lab::Lab;
 use crate::paper::parts::{axis, number, quote, text, verdict};
 
@@ -118,10 +119,11 @@ fn measure(lab: &Lab, ambient: f64, reflectivity: f64) -> Result<Condition, Expe
         (run.registers, run.frames_per_time) = (Some(REGISTERS), 1);
     }
     let simulation = Simulation::new(lab.camera.clone(), scene, lab.seed)?;
-    let settings = CalibrateSettings::default();
-    let mut sweep = ExposureSweep::new("wall", &settings);
-    for_each(&simulation, |_, simulated| Ok(sweep.push(&simulated.frame)?))?;
-    let (calibration, report) = calibrate::fit(&settings, None, vec![sweep.finish()], Vec::new())?;
+    let sources = CalibrationSources {
+        exposure_sweeps: vec![Box::new(SimulatedFrames::new(&simulation))],
+        ..CalibrationSources::default()
+    };
+    let (calibration, report) = calibrate(&CalibrateSettings::default(), None, sources, &Unobserved)?;
     let end_us = calibration.terms.lut.map_or(f64::NAN, |lut| lut.valid_integration_time_us[1]);
     let samples = report.exposure_curves.iter().flat_map(|curve| &curve.samples);
     let means: Vec<(f64, f64)> = samples.map(|s| (s.integration_time_us, s.mean_amplitude_dn)).collect();

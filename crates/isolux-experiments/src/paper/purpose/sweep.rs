@@ -1,7 +1,7 @@
 //! The images of one experiment: a still scene over integration times, or a chart over distances, each before and
 //! after standardization.
 
-use isolux::standardize::{Choice, DistanceStep, Method, SpecularStep, TimeStep};
+use isolux::standardize::{Choice, DistanceStep, SpecularStep, TimeStep};
 use isolux::{Calibration, Channels, IntegrationTime, Plane, Standardizer, Stream};
 use isolux_camera::scene::object::{Form, Object};
 use isolux_camera::scene::run::Run;
@@ -44,7 +44,7 @@ impl Variant {
     }
 
     fn standardizer(self, calibration: &Calibration) -> Result<Standardizer, ExperimentError> {
-        let paper = Choice { method: Method::Paper, ..Choice::default() };
+        let paper = Choice::paper();
         let choice = match self {
             Self::Raw => Choice {
                 time: Some(TimeStep::None),

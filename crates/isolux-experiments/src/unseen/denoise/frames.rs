@@ -1,6 +1,6 @@
 //! Frames at a wanted signal-to-noise ratio, scaled by d² with each rule.
 
-use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::standardize::DenoiseStep;
 use isolux::{Channels, Choice, DenoiseRule, Frame, Plane, Standardizer};
 use isolux_camera::scene::object::Object;
 use isolux_camera::scene::run::Run;
@@ -121,14 +121,9 @@ impl Scaled {
 }
 
 fn standardizer(rule: Option<DenoiseRule>) -> Result<Standardizer, ExperimentError> {
-    let choice = Choice {
-        time: Some(TimeStep::None),
-        denoise: rule.map(DenoiseStep::Smooth),
-        distance: Some(DistanceStep::Square),
-        specular: Some(SpecularStep::None),
-        ..Choice::default()
-    };
-    Ok(Standardizer::plan(&choice, None, Channels::AMPLITUDE | Channels::DISTANCE)?)
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE;
+    let choice = Choice { denoise: rule.map(DenoiseStep::Smooth), ..Choice::textbook(channels) };
+    Ok(Standardizer::plan(&choice, None, channels)?)
 }
 
 /// The values that are there in the pixels that count.

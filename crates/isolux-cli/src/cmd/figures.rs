@@ -1,23 +1,21 @@
 //! `isolux figures`: what isolux reaches, measured here and now.
 
-mod real;
-
 use isolux_experiments::unseen::figure::Figure;
-use isolux_experiments::unseen::figures;
+use isolux_experiments::unseen::{figures, real_cameras};
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::options::FiguresArgs;
-use crate::terminal;
+use crate::terminal::{self, Terminal};
 
 pub(crate) fn run(args: &FiguresArgs) -> Outcome {
     if let Some(folder) = &args.recordings {
-        real::expect_recordings(folder)?;
+        real_cameras::expect_recordings(folder)?;
     }
     let progress = terminal::spinner();
-    let found = figures::simulated(&mut |step| progress.set_message(step.to_owned()));
-    let mut found = found.map_err(Failure::data)?;
+    let mut tell = |step: &str| progress.set_message(step.to_owned());
+    let mut found = figures::simulated(&mut tell)?;
     if let Some(folder) = &args.recordings {
-        found.extend(real::figures(folder, &mut |step| progress.set_message(step.to_owned()))?);
+        found.extend(real_cameras::figures(folder, &Terminal::default(), &mut tell)?);
     }
     progress.finish_and_clear();
     if args.json {

@@ -3,67 +3,69 @@
 use std::path::Path;
 
 use isolux::{Channels, Frame};
-use isolux_experiments::unseen::checkerboard::{Protocol, spreads};
-use isolux_experiments::unseen::figure::{Aim, Figure, Unit};
-use isolux_io::Recording;
-use isolux_pipeline::diagnose;
+use isolux_pipeline::{FrameSource, Observer, PipelineError, diagnose};
 
-use crate::failure::{Failure, Outcome};
-use crate::terminal::Terminal;
+use super::checkerboard::{Protocol, spreads};
+use super::figure::{Aim, Figure, Unit};
+use crate::error::ExperimentError;
 
 /// Where the white squares of the checkerboard saturate, m.
 const NEAREST_M: f64 = 0.68;
 /// Their label.
 const WHITE: u8 = 1;
 
+/// What is measured on the frames of one recording.
+type Measure = fn(&mut dyn FrameSource, &dyn Observer) -> Result<Vec<Figure>, ExperimentError>;
+
 /// The recordings that have figures, by their names.
 const MEASURED: [(&str, Measure); 2] =
     [("kinect2-checkerboard", checkerboard), ("ifm-o3d303", vendor_scaling)];
 
-/// Measures those recordings that are in `folder`.
-pub(super) fn figures(folder: &Path, progress: &mut dyn FnMut(&str)) -> Outcome<Vec<Figure>> {
+/// Refuses a folder without any of the recordings that have figures, before anything takes time.
+///
+/// # Errors
+/// [`ExperimentError::NoRecording`] for such a folder.
+pub fn expect_recordings(folder: &Path) -> Result<(), ExperimentError> {
+    if MEASURED.iter().any(|(name, _)| folder.join(name).is_dir()) {
+        return Ok(());
+    }
+    let expected = MEASURED.map(|(name, _)| name).join(" or ");
+    Err(ExperimentError::NoRecording { folder: folder.to_owned(), expected })
+}
+
+/// Measures those recordings that are in `folder`. `progress` is told the name of each.
+///
+/// # Errors
+/// [`ExperimentError`] for a recording that cannot be read or lacks what its figures need.
+pub fn figures(
+    folder: &Path,
+    observer: &dyn Observer,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Vec<Figure>, ExperimentError> {
     let mut figures = Vec::new();
     for (name, measure) in MEASURED {
         let path = folder.join(name);
         if path.is_dir() {
             progress(name);
-            figures.extend(measure(&mut isolux_io::open(&path)?)?);
+            let mut recording = isolux_io::open(&path).map_err(PipelineError::from)?;
+            figures.extend(measure(&mut recording, observer)?);
         }
     }
     Ok(figures)
 }
 
-/// Refuses a folder without any of them, before anything takes time.
-pub(super) fn expect_recordings(folder: &Path) -> Outcome {
-    if MEASURED.iter().any(|(name, _)| folder.join(name).is_dir()) {
-        return Ok(());
-    }
-    Err(Failure::data(format!(
-        "`{}`: no recording found that has a figure, kinect2-checkerboard or ifm-o3d303 expected",
-        folder.display()
-    )))
-}
-
-type Measure = fn(&mut Box<dyn Recording>) -> Outcome<Vec<Figure>>;
-
 /// White squares of a board at all distances, tilts and places, in frames that were not fitted on.
-fn checkerboard(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
-    let metadata = recording.metadata().clone();
-    let Some(intrinsics) = metadata.info.intrinsics.as_ref().map(|recorded| recorded.pinhole) else {
-        return Err(Failure::data(format!(
-            "`{}`: no intrinsics found in its recording.json, {{fx, fy, cx, cy}} expected",
-            metadata.path.display()
-        )));
+fn checkerboard(recording: &mut dyn FrameSource, _: &dyn Observer) -> Result<Vec<Figure>, ExperimentError> {
+    let facts = recording.facts();
+    let Some(intrinsics) = facts.intrinsics() else {
+        return Err(ExperimentError::NoIntrinsics { recording: facts.name });
     };
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;
-    let mut frames = Vec::new();
-    for index in 0..metadata.require_frame_count()? {
-        let mut frame = Frame::new(metadata.shape);
-        recording.read_frame(index, wanted, &mut frame)?;
-        frames.push(frame);
+    let (mut frames, mut frame) = (Vec::new(), Frame::new(facts.shape));
+    while recording.read(frames.len(), wanted, &mut frame)? {
+        frames.push(std::mem::replace(&mut frame, Frame::new(facts.shape)));
     }
-    let protocol = Protocol { intrinsics, label: WHITE, nearest_m: NEAREST_M };
-    let spreads = spreads(&frames, &protocol).map_err(Failure::data)?;
+    let spreads = spreads(&frames, &Protocol { intrinsics, label: WHITE, nearest_m: NEAREST_M })?;
     let last = spreads.len().saturating_sub(1);
     let mut figures = Vec::new();
     for (index, spread) in spreads.iter().enumerate() {
@@ -78,8 +80,11 @@ fn checkerboard(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
 }
 
 /// What time and place leave of a vendor's own scaling.
-fn vendor_scaling(recording: &mut Box<dyn Recording>) -> Outcome<Vec<Figure>> {
-    let diagnosis = diagnose(recording, &Terminal::default())?;
+fn vendor_scaling(
+    recording: &mut dyn FrameSource,
+    observer: &dyn Observer,
+) -> Result<Vec<Figure>, ExperimentError> {
+    let diagnosis = diagnose(recording, observer)?;
     let scaling = diagnosis.vendor_scaling.as_ref().ok();
     let residual = scaling.map_or(f64::NAN, |scaling| scaling.residual);
     let exponent = scaling.and_then(|scaling| scaling.distance.as_ref().ok());
