@@ -73,7 +73,7 @@ pub fn direction(better: Better) -> &'static str {
 
 /// The figures that the recording does not determine, grouped by reason; empty when it determines all.
 #[must_use]
-pub fn untold(rows: &[ComparisonRow]) -> String {
+pub fn unavailable(rows: &[ComparisonRow]) -> String {
     let mut missing: Vec<(Unavailable, Vec<&str>)> = Vec::new();
     for row in rows.iter().filter(|row| !row.is_told()) {
         let reason = (row.before, row.after);

@@ -49,14 +49,14 @@ fn describe(diagnosis: &Diagnosis) -> String {
             describe_scaling(scaling)
         ));
     }
-    parts.extend(untold(diagnosis));
+    parts.extend(unavailable(diagnosis));
     parts.join("\n")
 }
 
 /// What is not told, each reason once.
-fn untold(diagnosis: &Diagnosis) -> Option<String> {
+fn unavailable(diagnosis: &Diagnosis) -> Option<String> {
     let mut reasons: Vec<(Vec<&str>, String)> = Vec::new();
-    for (what, why) in diagnosis.untold() {
+    for (what, why) in diagnosis.unavailable() {
         let why = why.to_string();
         match reasons.iter_mut().find(|(_, known)| *known == why) {
             Some((names, _)) => names.push(what),

@@ -1,7 +1,7 @@
 //! The figures of one chain before and after, as a table for the terminal.
 
 use isolux::evaluate::{Comparison, ComparisonRow};
-use isolux_pipeline::figures::{direction, untold, written};
+use isolux_pipeline::figures::{direction, unavailable, written};
 
 use crate::terminal::table;
 
@@ -11,7 +11,7 @@ pub(crate) fn figures_table(comparison: &Comparison, wanted: impl Fn(&str) -> bo
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     let found: Vec<ComparisonRow> = comparison.rows().into_iter().filter(|row| wanted(&row.metric)).collect();
     rows.extend(found.iter().filter(|row| row.is_told()).filter_map(line));
-    table(&rows) + &untold(&found)
+    table(&rows) + &unavailable(&found)
 }
 
 /// `None` where there is no value after.

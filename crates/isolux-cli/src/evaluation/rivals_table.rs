@@ -1,7 +1,7 @@
 //! The chosen chain beside its rivals, as a table for the terminal.
 
 use isolux_pipeline::Assessment;
-use isolux_pipeline::figures::{CHOSEN, chain_heads, chain_rows, untold};
+use isolux_pipeline::figures::{CHOSEN, chain_heads, chain_rows, unavailable};
 
 use crate::terminal::table;
 
@@ -14,5 +14,5 @@ pub(crate) fn rivals_table(assessment: &Assessment, chosen: &[&str]) -> String {
         text += &format!("\n{}: {}", rival.name, rival.steps.join(", "));
     }
     text += &format!("\n{CHOSEN}: {}", chosen.join(", "));
-    text + &untold(&assessment.comparison.rows())
+    text + &unavailable(&assessment.comparison.rows())
 }

@@ -27,12 +27,6 @@ impl Uses {
         uses
     }
 
-    /// Takes out one use, written as `FILE -> FILE`; false if there is none.
-    pub(crate) fn remove(&mut self, arrow: &str) -> bool {
-        let Some((from, to)) = arrow.split_once(" -> ") else { return false };
-        self.0.get_mut(from).is_some_and(|uses| uses.remove(to).is_some())
-    }
-
     /// The shortest circle through each file that is in one, every circle once, file by file.
     pub(crate) fn circles(&self) -> Vec<String> {
         let mut seen = BTreeSet::new();
@@ -121,14 +115,4 @@ fn documents_tests_and_other_crates_make_no_circle() {
         ),
     ];
     assert_eq!(circles_of(&files), Vec::<String>::new());
-}
-
-#[test]
-fn what_is_taken_out_closes_no_circle() {
-    let files = [("lib.rs", "mod b;\nmod c;"), ("b.rs", "use crate::c::C;"), ("c.rs", "use crate::b::B;")];
-    let sources = files.iter().map(|(path, text)| Source::read(&format!("a/src/{path}"), text));
-    let mut uses = Uses::of(&Crate::new("a", sources.collect()));
-    assert!(!uses.circles().is_empty());
-    assert!(uses.remove("a/src/b.rs -> a/src/c.rs") && !uses.remove("a/src/b.rs -> a/src/c.rs"));
-    assert!(uses.circles().is_empty());
 }

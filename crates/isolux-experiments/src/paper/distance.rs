@@ -11,7 +11,7 @@ use super::parts::{axis, number, quote, text};
 use crate::error::ExperimentError;
 use crate::paper::lab::{BoardMean, Lab};
 use curves::{
-    Curve, FLAT_WITHIN, STRAY_US, cubic, curves, multiplier, reference_amplitude_dn, time_multiplier,
+    Curve, FLAT_WITHIN, STRAY_US, cubic, curves, median, multiplier, reference_amplitude_dn, time_multiplier,
 };
 
 /// The section of figures 4, 5 and 10.
@@ -244,9 +244,4 @@ fn reference_mark(lab: &Lab) -> Mark {
 fn steps([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
     const COUNT: u32 = 100;
     (0..=COUNT).map(move |step| from + (to - from) * f64::from(step) / f64::from(COUNT))
-}
-
-/// Median; NaN for none.
-fn median(mut values: Vec<f64>) -> f64 {
-    isolux::statistics::upper_median(&mut values).unwrap_or(f64::NAN)
 }

@@ -6,8 +6,8 @@ use isolux::evaluate::{EvaluationFrame, EvaluationSettings, Evaluator};
 use isolux::standardize::StandardizeError;
 use isolux::{Frame, IntegrationTime, PixelFlags, Plane, Shape, Standardized, Standardizer, Stream};
 
+use super::assessment::{MeanAtTime, Pixels};
 use super::rivals::{Pass, Rivals};
-use super::{MeanAtTime, Pixels};
 
 /// The two evaluators, what makes the second's frames, and the chains beside it.
 pub(super) struct Evaluation {

@@ -1,13 +1,14 @@
 //! Evaluates the frames of a recording before and after standardization, also by the textbook's and the paper's
 //! chain.
 
+mod assessment;
 mod evaluation;
 mod rivals;
 mod samples;
 
 use isolux::evaluate::{Comparison, nearest_reference};
 use isolux::still_scene::MotionWatch;
-use isolux::{Calibration, Channels, Frame, IntegrationTime, Standardizer};
+use isolux::{Channels, Frame, IntegrationTime, Standardizer};
 
 use self::evaluation::Evaluation;
 use self::rivals::Rivals;
@@ -17,57 +18,9 @@ use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
+pub use self::assessment::{AssessOptions, Assessment, MeanAtTime, Pixels};
 pub use self::rivals::Standing;
 pub use self::samples::{SampleFrame, first_frames_at, sample_frames};
-
-/// Which pixels count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pixels {
-    /// Before and after, all pixels with a value.
-    #[default]
-    Valid,
-    /// Before and after the same pixels: those with a standardized value that are neither LOW_SIGNAL nor SATURATED.
-    Trusted,
-}
-
-/// Options of an assessment.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AssessOptions<'a> {
-    /// The calibration that the chain was planned with.
-    pub calibration: Option<&'a Calibration>,
-    /// Which pixels count.
-    pub pixels: Pixels,
-    /// Also evaluate the textbook's and the paper's chain on the same frames, where recording and calibration allow
-    /// them and they differ from the chosen chain.
-    pub rivals: bool,
-}
-
-/// The figures of a recording before and after standardization.
-#[derive(Clone, Debug)]
-pub struct Assessment {
-    /// Number of frames.
-    pub frames: usize,
-    /// The figures before and after.
-    pub comparison: Comparison,
-    /// The other chains and their figures.
-    pub rivals: Vec<Standing>,
-    /// Mean over the counted pixels at each integration time, increasing.
-    pub means: Vec<MeanAtTime>,
-    /// A few frames: those of the shortest, the reference and the longest integration time, or the first, middle
-    /// and last.
-    pub shown_frames: Vec<usize>,
-}
-
-/// Means of the frames of one integration time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeanAtTime {
-    /// The time, µs.
-    pub time_us: f64,
-    /// Raw, DN.
-    pub before_dn: f64,
-    /// Standardized, DN.
-    pub after_dn: f64,
-}
 
 /// Evaluates the raw and the standardized amplitude of the same frames. Two passes: one over the integration
 /// times to find the reference exposure, one over the frames.

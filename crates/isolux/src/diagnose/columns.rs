@@ -1,8 +1,8 @@
 //! One regression on ln t, ln d and powers of r², with the columns that the rows determine.
 
+use super::limits::{MINIMUM_DISTANCE_RATIO, MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS, SAME_TIME_RATIO};
 use super::sample::Observed;
-use super::untold::{Outcome, Untold};
-use super::{MINIMUM_DISTANCE_RATIO, MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS, SAME_TIME_RATIO};
+use super::unavailable::{Outcome, Unavailable};
 use crate::numerics::regression::{Coefficient, Intercepts, Regression, RegressionError, RegressionFit, Row};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::quantile;
@@ -80,7 +80,7 @@ impl Request<'_> {
                 }
             }
         };
-        let find = |name: &str| fit.coefficient(name).cloned().ok_or(Untold::NoValidPixels);
+        let find = |name: &str| fit.coefficient(name).cloned().ok_or(Unavailable::NoValidPixels);
         Ok(Fitted {
             time: time.and_then(|()| find(TIME)),
             distance: distance.and_then(|()| find(DISTANCE)),
@@ -128,15 +128,15 @@ impl Request<'_> {
     }
 }
 
-fn first_reason(outcomes: [Outcome<()>; 3]) -> Untold {
-    outcomes.into_iter().find_map(Result::err).unwrap_or(Untold::NoValidPixels)
+fn first_reason(outcomes: [Outcome<()>; 3]) -> Unavailable {
+    outcomes.into_iter().find_map(Result::err).unwrap_or(Unavailable::NoValidPixels)
 }
 
 fn require(rows: &[Observed]) -> Outcome<()> {
     if rows.len() >= MINIMUM_ROWS {
         return Ok(());
     }
-    Err(Untold::TooFewPixels { found: rows.len(), needed: MINIMUM_ROWS })
+    Err(Unavailable::TooFewPixels { found: rows.len(), needed: MINIMUM_ROWS })
 }
 
 /// Refuses times that are unknown or all the same.
@@ -144,10 +144,10 @@ pub(super) fn varying_times(rows: &[Observed]) -> Outcome<()> {
     let known = || rows.iter().map(|row| row.time_us).filter(|time_us| !time_us.is_nan());
     let (shortest, longest) = (known().fold(f32::INFINITY, f32::min), known().fold(0.0, f32::max));
     if longest == 0.0 {
-        return Err(Untold::TimeUnknown);
+        return Err(Unavailable::TimeUnknown);
     }
     if f64::from(longest) < SAME_TIME_RATIO * f64::from(shortest) {
-        return Err(Untold::TimeConstant { time_us: f64::from(longest) });
+        return Err(Unavailable::TimeConstant { time_us: f64::from(longest) });
     }
     Ok(())
 }
@@ -157,11 +157,11 @@ fn varying_distances(rows: &[Observed], of: &str) -> Outcome<()> {
     let mut known: Vec<f64> =
         rows.iter().map(|row| f64::from(row.distance_m)).filter(|distance_m| !distance_m.is_nan()).collect();
     let (Some(near), Some(far)) = (quantile(&mut known, 0.05), quantile(&mut known, 0.95)) else {
-        return Err(Untold::NoDistance);
+        return Err(Unavailable::NoDistance);
     };
     if far / near < MINIMUM_DISTANCE_RATIO {
         let (of, minimum) = (of.to_owned(), MINIMUM_DISTANCE_RATIO);
-        return Err(Untold::DistanceSpanTooSmall { of, found: far / near, minimum });
+        return Err(Unavailable::DistanceSpanTooSmall { of, found: far / near, minimum });
     }
     Ok(())
 }

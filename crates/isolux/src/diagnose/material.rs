@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
-use super::columns::{Fitted, Request, thirds};
+use super::columns::{Fitted, Request};
 use super::effect::Estimate;
+use super::ranges::{RangeExponent, by_distance};
 use super::sample::Observed;
 use super::scaling::Scaling;
-use super::untold::{Outcome, Untold};
+use super::unavailable::{Outcome, Unavailable};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::quantile;
 
@@ -42,17 +43,6 @@ pub struct MaterialFit {
     pub observations: usize,
     /// 5 % and 95 % quantiles of their distances, m; `None` without distances.
     pub distances_m: Option<[f64; 2]>,
-}
-
-/// An exponent of d within a range of distances.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RangeExponent {
-    /// Nearest distance, m.
-    pub from_m: f64,
-    /// Farthest distance, m.
-    pub to_m: f64,
-    /// The exponent.
-    pub exponent: Estimate,
 }
 
 /// The fits that need to know, or to assume, what is one material.
@@ -106,7 +96,7 @@ fn vendor_groups(all: &[Observed], vendor: &Outcome<Scaling>) -> Outcome<Materia
     let scaling = vendor.as_ref().map_err(Clone::clone)?;
     let flat = |distance: &Estimate| distance.value.abs() < SCALED_DISTANCE;
     if scaling.residual < SCALED_RESIDUAL && scaling.distance.as_ref().map_or(true, flat) {
-        return Err(Untold::VendorIsNoMaterial);
+        return Err(Unavailable::VendorIsNoMaterial);
     }
     let rows: Vec<Observed> = all.iter().copied().filter(|row| row.vendor > 0.0).collect();
     let mut values: Vec<u32> = rows.iter().map(|row| row.vendor.to_bits()).collect();
@@ -130,7 +120,8 @@ impl MaterialFit {
             label,
             time: estimate(&fitted.time),
             distance: estimate(&fitted.distance),
-            radius: radius.and_then(|terms| terms.first().map(Estimate::from).ok_or(Untold::MaterialUnknown)),
+            radius: radius
+                .and_then(|terms| terms.first().map(Estimate::from).ok_or(Unavailable::MaterialUnknown)),
             by_distance: by_distance(request, &fitted.rows),
             residual: fitted.fit.residual_sigma,
             residual_rms: fitted.fit.residual_rms,
@@ -138,17 +129,6 @@ impl MaterialFit {
             distances_m: span(&fitted.rows),
         }
     }
-}
-
-/// The exponent of d in thirds of the pixels; thirds that do not determine it are left out.
-pub(super) fn by_distance(request: &Request<'_>, rows: &[Observed]) -> Vec<RangeExponent> {
-    let of_third = |rows: Vec<Observed>| {
-        let (from, to) = (rows.first()?.distance_m, rows.last()?.distance_m);
-        let coefficient = request.fit(&rows).ok()?.distance.ok()?;
-        let exponent = Estimate::from(&coefficient);
-        Some(RangeExponent { from_m: f64::from(from), to_m: f64::from(to), exponent })
-    };
-    thirds(rows).into_iter().filter_map(of_third).collect()
 }
 
 fn span(rows: &[Observed]) -> Option<[f64; 2]> {

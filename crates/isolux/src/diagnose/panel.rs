@@ -1,8 +1,8 @@
 //! Sums of the same pixels at each integration time, and whether the scene before them has moved.
 
+use super::limits::{MINIMUM_ROWS, SAME_TIME_RATIO};
 use super::still::{Point, StillPixels};
-use super::untold::{Outcome, Untold};
-use super::{MINIMUM_ROWS, SAME_TIME_RATIO};
+use super::unavailable::{Outcome, Unavailable};
 use crate::numerics::hash::splitmix64;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
@@ -152,19 +152,19 @@ impl Panel {
     /// The exponent of t. Values at or above `clip_dn` do not enter.
     pub(super) fn finish(&self, clip_dn: f32, time_per_pixel: bool) -> Outcome<StillPixels> {
         if self.seen == 0 {
-            return Err(Untold::TimeUnknown);
+            return Err(Unavailable::TimeUnknown);
         }
         if f64::from(self.longest_us) < SAME_TIME_RATIO * f64::from(self.shortest_us) {
-            return Err(Untold::TimeConstant { time_us: f64::from(self.longest_us) });
+            return Err(Unavailable::TimeConstant { time_us: f64::from(self.longest_us) });
         }
         let series = self.series(clip_dn);
         let repeated = series.iter().filter(|points| points.len() > 1).map(Vec::len).sum::<usize>();
         let moved_fraction = self.moved as f64 / self.seen as f64;
         if repeated < MINIMUM_ROWS {
             return Err(match (time_per_pixel, self.moved) {
-                (true, _) => Untold::TimeFollowsMaterial,
-                (false, 0) => Untold::TooFewPixels { found: repeated, needed: MINIMUM_ROWS },
-                (false, _) => Untold::SceneMoved { share: moved_fraction },
+                (true, _) => Unavailable::TimeFollowsMaterial,
+                (false, 0) => Unavailable::TooFewPixels { found: repeated, needed: MINIMUM_ROWS },
+                (false, _) => Unavailable::SceneMoved { share: moved_fraction },
             });
         }
         StillPixels::fit(&series, moved_fraction)

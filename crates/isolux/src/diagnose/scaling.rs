@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::SAME_TIME_RATIO;
 use super::columns::{Fitted, RADIAL, Request, TIME};
 use super::effect::Estimate;
-use super::material::{RangeExponent, by_distance};
+use super::limits::SAME_TIME_RATIO;
+use super::ranges::{RangeExponent, by_distance};
 use super::sample::Observed;
-use super::untold::Outcome;
+use super::unavailable::Outcome;
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::median;
 

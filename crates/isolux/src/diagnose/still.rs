@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::effect::{Effect, Estimate, Evidence, State};
-use super::untold::Outcome;
-use super::{MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS};
+use super::limits::{MINIMUM_FRAME_CLUSTERS, MINIMUM_ROWS};
+use super::unavailable::Outcome;
 use crate::numerics::regression::{Intercepts, Regression, Row};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::quantile;

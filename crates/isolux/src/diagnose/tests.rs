@@ -1,7 +1,7 @@
 //! The diagnosis on made-up frames whose law is known.
 
 use super::*;
-use crate::frame::Plane;
+use crate::frame::{Frame, IntegrationTime, Plane, Shape};
 
 /// A frame of amplitudes `law(row, column)`; distances and times are set by the caller.
 fn frame(shape: Shape, law: impl Fn(usize, usize) -> f64) -> Frame {
@@ -42,7 +42,7 @@ fn a_still_scene_tells_the_exponent_of_time_whatever_the_materials() {
         // Amplitudes are f32: 6e-8 relative, over a factor of 8 in time.
         assert!((time.exponent.value - exponent).abs() < 1e-6, "{time:?}");
         assert_eq!(time.state, State::of_time(time.exponent));
-        assert_eq!(diagnosis.distance, Err(Untold::NoDistance));
+        assert_eq!(diagnosis.distance, Err(Unavailable::NoDistance));
     }
 }
 
@@ -116,11 +116,11 @@ fn what_was_not_recorded_is_not_told() {
     let unknown = frame(SHAPE, material);
     let mut constant = unknown.clone();
     constant.integration_time_us = IntegrationTime::PerFrame(1000.0);
-    assert_eq!(diagnose(&[unknown.clone(), unknown]).time, Err(Untold::TimeUnknown));
+    assert_eq!(diagnose(&[unknown.clone(), unknown]).time, Err(Unavailable::TimeUnknown));
     let diagnosis = diagnose(&[constant.clone(), constant]);
-    assert_eq!(diagnosis.time, Err(Untold::TimeConstant { time_us: 1000.0 }));
+    assert_eq!(diagnosis.time, Err(Unavailable::TimeConstant { time_us: 1000.0 }));
     assert_eq!(diagnosis.headline(), "raw or corrected: cannot be told");
-    assert_eq!(diagnosis.vendor_scaling, Err(Untold::NoChannel { channel: "vendor_amplitude" }));
+    assert_eq!(diagnosis.vendor_scaling, Err(Unavailable::NoChannel { channel: "vendor_amplitude" }));
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_scene_that_moves_with_the_times_is_no_still_scene() {
     for (number, frame) in frames.iter_mut().enumerate() {
         frame.distance_m = Some(Plane::filled(SHAPE, 1.0 + number as f32));
     }
-    assert!(matches!(diagnose(&frames).time, Err(Untold::SceneMoved { share }) if share == 0.75));
+    assert!(matches!(diagnose(&frames).time, Err(Unavailable::SceneMoved { share }) if share == 0.75));
 }
 
 /// One material in steps of distance, tilted so that r² and d are not one.

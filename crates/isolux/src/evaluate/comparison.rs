@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::fraction::fraction;
 use super::{Evaluation, Evaluator, Outcome, SnrStratum, Unavailable};
 
 /// The raw and the standardized amplitude of the same frames.
@@ -165,7 +166,7 @@ impl Comparison {
                 let strata = evaluation.pixel_cv_by_snr.as_ref().map_err(|reason| *reason)?;
                 let stratum = strata.get(index).ok_or(Unavailable::NoValidPixels)?;
                 let pixels = evaluation.pixels_per_frame as u64;
-                let valid_fraction = super::fraction(stratum.pixels as u64, pixels);
+                let valid_fraction = fraction(stratum.pixels as u64, pixels);
                 stratum.median_cv.map(|cv| (cv, valid_fraction)).ok_or(Unavailable::NoValidPixels)
             })
         };
@@ -185,7 +186,7 @@ impl Comparison {
                 let stratum = strata.get(index).ok_or(Unavailable::NoValidPixels)?;
                 let values = evaluation.frames * evaluation.pixels_per_frame as u64;
                 let share = stratum.within_one_sigma.ok_or(Unavailable::NoValidPixels)?;
-                Ok((share, super::fraction(stratum.errors, values)))
+                Ok((share, fraction(stratum.errors, values)))
             })
         };
         if self.snr_edges.is_empty() { Vec::new() } else { from.zip(to).enumerate().map(row).collect() }

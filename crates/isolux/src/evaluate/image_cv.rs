@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::fraction;
+use super::fraction::fraction;
 use super::outcome::{Outcome, Unavailable};
 use super::runs::Runs;
 

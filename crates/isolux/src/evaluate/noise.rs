@@ -6,7 +6,7 @@ use crate::frame::{IntegrationTime, Plane, Shape};
 use crate::numerics::differences::trimmed_deviation;
 use crate::numerics::statistics::{Moments, SIGMA_PER_MAD, median, median_absolute_deviation, quantile};
 
-use super::fraction;
+use super::fraction::fraction;
 use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::frame::Plane;
 use crate::numerics::statistics::{median, quantile};
 
-use super::fraction;
+use super::fraction::fraction;
 use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
 use super::runs::Runs;

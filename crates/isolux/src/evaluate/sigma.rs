@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::frame::{IntegrationTime, PixelFlags, Plane};
 
-use super::fraction;
+use super::fraction::fraction;
 use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
 

@@ -8,9 +8,10 @@ use crate::frame::IntegrationTime;
 use crate::numerics::hash::splitmix64;
 use crate::numerics::statistics::{quantile, theil_sen};
 
+use super::fraction::fraction;
 use super::input::Times;
 use super::outcome::{Outcome, Unavailable};
-use super::{EvaluationFrame, EvaluationSettings, fraction};
+use super::{EvaluationFrame, EvaluationSettings};
 
 /// Pairs below which a median slope is no statement.
 const MINIMUM_PAIRS: usize = 10;

@@ -1,6 +1,6 @@
 //! One figure a frame: mean, extremes, and the pixels behind it.
 
-use super::fraction;
+use super::fraction::fraction;
 
 /// Running mean and extremes over frames, with the pixels that entered.
 #[derive(Clone, Copy, Debug, Default)]

@@ -4,9 +4,9 @@ use isolux::terms::Cubic;
 use isolux_report::page::Claim;
 
 use super::curves::{
-    Curve, FLAT_WITHIN, STRAY_US, cubic, multiplier, reference_amplitude_dn, time_multiplier,
+    Curve, FLAT_WITHIN, STRAY_US, cubic, median, multiplier, reference_amplitude_dn, time_multiplier,
 };
-use super::{median, rician};
+use super::rician;
 use crate::error::ExperimentError;
 use crate::paper::lab::{BoardMean, Lab};
 use crate::paper::parts::verdict;

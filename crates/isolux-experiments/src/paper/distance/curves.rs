@@ -151,3 +151,8 @@ pub(super) fn reference_amplitude_dn(lab: &Lab, curves: &[Curve]) -> f64 {
     let curve = curves.iter().find(|curve| Some(curve.integration_time_us) == reference_us);
     curve.map_or(f64::NAN, |curve| curve.reference_dn)
 }
+
+/// Median; NaN for none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    isolux::statistics::upper_median(&mut values).unwrap_or(f64::NAN)
+}

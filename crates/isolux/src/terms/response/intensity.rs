@@ -12,11 +12,12 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_8};
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
-use super::full_well::{Channel, Fitted, FullWell, fit};
+use super::full_well::FullWell;
 use super::means::{PixelMeans, PixelSeries};
 use super::phase_samples::{rate, shot_noise};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
+use super::well_fit::{Channel, Fitted, fit};
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, Source};
 

@@ -4,10 +4,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
-use super::full_well::{Channel, Fitted, FullWell, fit};
+use super::full_well::FullWell;
 use super::means::{PixelMeans, PixelSeries};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
+use super::well_fit::{Channel, Fitted, fit};
 use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, Source};

@@ -55,7 +55,7 @@ impl PixelResponse {
     ) -> Result<Self, ResponseError> {
         let shape = stack.shape();
         if shape.pixels() > Self::MOST_PIXELS {
-            return Err(ResponseError::ImageTooLarge { pixels: shape.pixels() });
+            return Err(ResponseError::ImageTooLarge { pixels: shape.pixels(), most: Self::MOST_PIXELS });
         }
         let data = Fit(StillScene::new(stack, least_amplitude_dn));
         let times_us = &data.0.times_us;

@@ -2,17 +2,18 @@
 
 use serde::Serialize;
 
+use super::limits::MINIMUM_ROWS;
 use crate::numerics::regression::RegressionError;
 
 /// A figure, or the reason why this recording does not determine it. In JSON the figure itself, or
 /// `{"unavailable": "time_constant", "because": "…"}`.
-pub type Outcome<T> = Result<T, Untold>;
+pub type Outcome<T> = Result<T, Unavailable>;
 
 /// Why something is not told. Never a guess in its place.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(tag = "unavailable", rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum Untold {
+pub enum Unavailable {
     /// Nothing was there to look at.
     #[error("no pixel of any frame is valid")]
     NoValidPixels,
@@ -104,15 +105,13 @@ pub enum Untold {
     AmplitudeFromPhaseSamples,
 }
 
-impl From<RegressionError> for Untold {
+impl From<RegressionError> for Unavailable {
     fn from(error: RegressionError) -> Self {
         match error {
             RegressionError::TooFewRows { found, unknowns } => {
-                Self::TooFewPixels { found, needed: (unknowns + 1).max(super::MINIMUM_ROWS) }
+                Self::TooFewPixels { found, needed: (unknowns + 1).max(MINIMUM_ROWS) }
             }
-            RegressionError::Row { row, .. } => {
-                Self::TooFewPixels { found: row, needed: super::MINIMUM_ROWS }
-            }
+            RegressionError::Row { row, .. } => Self::TooFewPixels { found: row, needed: MINIMUM_ROWS },
             RegressionError::Constant { column } => {
                 Self::Confounded { effect: column, others: "the material".to_owned() }
             }
