@@ -1,7 +1,7 @@
 //! What a user can do about an error or a warning, as data. Each interface puts it into its own words: the command
 //! line names options, Python names arguments.
 
-use crate::choice::{DistanceStep, TimeStep};
+use crate::step_names::{DistanceStep, TimeStep};
 
 /// The kinds of recordings that a calibration is fitted from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

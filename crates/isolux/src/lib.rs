@@ -63,6 +63,7 @@ mod numerics;
 mod outcome_json;
 pub mod specular;
 pub mod standardize;
+mod step_names;
 pub mod still_scene;
 mod surface;
 pub mod terms;

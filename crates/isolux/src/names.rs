@@ -111,7 +111,7 @@ pub(crate) use {by_name, named};
 
 #[cfg(test)]
 mod tests {
-    use crate::choice::{Method, TimeStep};
+    use crate::step_names::{Method, TimeStep};
 
     #[test]
     fn a_name_reads_back_as_what_it_names() {

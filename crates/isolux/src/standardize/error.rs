@@ -1,9 +1,9 @@
 //! Why a frame cannot be standardized.
 
 use crate::advice::Advice;
-use crate::choice::TimeStep;
 use crate::denoise::DenoiseError;
 use crate::frame::{Shape, ShapeError};
+use crate::step_names::TimeStep;
 
 /// Why a frame cannot be standardized.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -35,9 +35,8 @@ mod steps;
 mod stream;
 mod workspace;
 
-pub use crate::choice::{
-    AngleStep, Choice, DenoiseStep, DistanceStep, Method, ProfileStep, SigmaStep, SpecularStep, TimeStep,
-};
+pub use crate::choice::{Choice, DenoiseStep, SpecularStep};
+pub use crate::step_names::{AngleStep, DistanceStep, Method, ProfileStep, SigmaStep, TimeStep};
 pub use error::StandardizeError;
 pub use frame_lineariser::FrameLineariser;
 pub use merge::{BracketMerge, MergeError};

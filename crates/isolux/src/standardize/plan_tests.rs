@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::calibration::Reference;
-use crate::choice::{DenoiseStep, DistanceStep, Method, TimeStep};
+use crate::choice::DenoiseStep;
+use crate::step_names::{DistanceStep, Method, TimeStep};
 
 const BOTH: Channels = Channels::INTEGRATION_TIME.union(Channels::DISTANCE).union(Channels::AMPLITUDE);
 

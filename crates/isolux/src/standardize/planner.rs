@@ -4,8 +4,9 @@ use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
 use crate::advice::RecordingKind;
 use crate::calibration::Calibration;
-use crate::choice::{Choice, Method};
+use crate::choice::Choice;
 use crate::frame::Channels;
+use crate::step_names::Method;
 
 /// Collects the plan; each step adds to it in turn.
 pub(super) struct Planner<'a> {

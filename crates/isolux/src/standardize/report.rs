@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::advice::{Advice, RecordingKind};
-use crate::choice::{DistanceStep, TimeStep};
 use crate::frame::Shape;
+use crate::step_names::{DistanceStep, TimeStep};
 
 /// One step of the chain, as it is recorded with the output.
 #[derive(Clone, Debug, PartialEq, Eq)]

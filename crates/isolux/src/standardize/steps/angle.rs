@@ -1,11 +1,11 @@
 //! The step that removes the effect of the angle of incidence: a factor on the multipliers of a block.
 
-use crate::choice::AngleStep;
 use crate::frame::Channels;
 use crate::frame::Intrinsics;
 use crate::frame::PixelFlags;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
+use crate::step_names::AngleStep;
 use crate::terms::angle::{self, LAMBERT, LEAST_COSINE};
 
 /// How a cosine becomes a multiplier.

@@ -4,10 +4,10 @@
 
 use crate::advice::RecordingKind;
 use crate::calibration::{Calibration, REFERENCE_DISTANCE_M};
-use crate::choice::{DistanceStep, Method};
 use crate::frame::Channels;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
+use crate::step_names::{DistanceStep, Method};
 use crate::terms::{DistanceLaw, eq5, square};
 
 /// The law, and the texts that record it. The step is recorded after that of the denoising, which is planned later.

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use crate::advice::RecordingKind;
-use crate::choice::{Method, ProfileStep};
 use crate::frame::PixelFlags;
 use crate::frame::Shape;
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
+use crate::step_names::{Method, ProfileStep};
 use crate::terms::profile::ProfileGains;
 
 /// Plans the step and computes the multipliers of the whole image. `best` uses the profile if the calibration holds

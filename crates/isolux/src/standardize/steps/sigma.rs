@@ -9,13 +9,13 @@
 //! ratio of about 5 on: below, an amplitude is Rician (too high by `σ_a²/2a`) and the phase is no longer normal.
 
 use crate::calibration::Calibration;
-use crate::choice::SigmaStep;
 use crate::denoise::Denoiser;
 use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::frame::{Channels, Frame, IntegrationTime};
 use crate::standardize::kernel::BLOCK;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
+use crate::step_names::SigmaStep;
 use crate::terms::noise::AmplitudeNoise;
 use crate::terms::{DistanceLaw, NoiseModel};
 
