@@ -57,7 +57,7 @@ pub struct Source {
     pub frames_left_out: usize,
 }
 
-/// How well a term describes what it was fitted on.
+/// How well a term fits its recordings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitQuality {

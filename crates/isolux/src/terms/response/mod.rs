@@ -71,7 +71,7 @@ pub struct Response {
     /// From the raw bins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase_samples: Option<PhaseSampleResponse>,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
@@ -150,7 +150,7 @@ impl Response {
         tiers.into_iter().flatten()
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
