@@ -1,6 +1,6 @@
 //! The correction terms. Each module holds the parameters of a term, the correction and the fit. A term has the
 //! same name in code, in the calibration file and on the command line. Distances d are radial, in m; integration
-//! times t in µs; amplitudes in DN; multipliers are dimensionless and 1 at the reference.
+//! times t in µs; amplitudes in DN. Multipliers are dimensionless; those over time and distance are 1 at the reference.
 //!
 //! | term | corrects | source |
 //! |---|---|---|
