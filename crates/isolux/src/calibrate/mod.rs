@@ -8,7 +8,7 @@
 //! | still scene at several integration times | [`ExposureSweep`] | [`ExposureCurve`] | `lut`, `response`, `noise` |
 //! | flat target at several distances | [`DistanceSweep`] | [`ReferenceDecays`] | `cubic`, `spline` |
 //! | labelled materials in any pose | [`TargetSweep`] | [`TargetWindows`] | `spline`, `profile`, `angle` |
-//! | ordinary recording | [`SceneSweep`] | [`SceneObservations`] | those of the above that are absent |
+//! | ordinary recording | [`SceneSweep`] | [`SceneObservations`] | `lut`, `response`, `spline`, `profile`, `angle`, as far as absent |
 //!
 //! Targets and scenes are fitted with one model of time, distance, place and angle, [`joint`]. What a recording
 //! does not determine becomes no term, but a [`FitWarning`].

@@ -1,4 +1,4 @@
-//! Denoising one frame by a rule that needs no other.
+//! Denoises a frame by the rules that need no other frame.
 
 use super::image::{Image, keep_the_rest, measured};
 use super::noise::NoiseScale;
@@ -8,10 +8,10 @@ use super::{facet, median, wiener};
 use crate::frame::{Frame, Plane};
 use crate::memory::bytes;
 
-/// Working memory of the rules that need one frame alone, kept between frames. Empty until it is used.
+/// Working memory of the rules that need no other frame, kept between frames. Empty until it is used.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Denoiser {
-    /// NaN where a pixel takes no part.
+    /// Distances, m; NaN where a pixel does not count.
     measured_m: Vec<f32>,
     denoised_m: Vec<f32>,
     variance_left: Vec<f32>,
@@ -27,7 +27,7 @@ pub(crate) struct Denoiser {
 pub(crate) struct Denoised<'a> {
     /// Metres, row by row: denoised where the pixel is valid, the frame's own elsewhere.
     pub(crate) distance_m: &'a [f32],
-    /// Share of the variance of each delivered distance that is left, 0..=1; empty where it was not asked for.
+    /// Variance of each distance over that of the delivered one, 0..=1; empty where it was not asked for.
     pub(crate) variance_left: &'a [f32],
 }
 
@@ -38,8 +38,8 @@ impl Denoiser {
         planes.iter().sum::<usize>() + self.noise.bytes() + self.wiener.bytes() + self.guide.bytes()
     }
 
-    /// σ_d in m of a pixel of signal-to-noise ratio 1, which falls as 1/ratio; 0 where the frame does not tell it.
-    /// `snr` holds the ratio of each pixel.
+    /// σ_d in m of a pixel of signal-to-noise ratio 1; that of other pixels is lower by their ratio. 0 where the
+    /// frame does not determine it. `snr` holds the ratio of each pixel.
     pub(crate) fn unit_noise_m(&mut self, frame: &Frame, distance_m: &Plane<f32>, snr: &[f32]) -> f64 {
         self.measured_m.resize(snr.len(), f32::NAN);
         measured(snr, distance_m.values(), frame.flags.values(), &mut self.measured_m);
@@ -47,8 +47,8 @@ impl Denoiser {
         self.noise.estimate(image).sqrt()
     }
 
-    /// The distances to scale by, and, where `wanted`, how much of their noise is left. Allocates only when the shape
-    /// differs from that of the last frame.
+    /// The distances (m) that scale the amplitude, and, where `wanted`, how much of their variance is left.
+    /// Allocates only when the shape differs from that of the last frame.
     pub(crate) fn denoise(
         &mut self,
         rule: DenoiseRule,
@@ -85,7 +85,7 @@ impl Denoiser {
                 self.scale = self.noise.estimate(image);
                 self.guide.denoise(image, self.scale, &mut self.wiener, out, left);
             }
-            // One frame is its own mean.
+            // The mean over one frame is the frame itself.
             DenoiseRule::Temporal => {
                 out.copy_from_slice(image.distance_m);
                 if let Some(left) = left {

@@ -6,10 +6,10 @@ use crate::frame::ShapeError;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DenoiseError {
-    /// Planes that do not fit together.
+    /// The planes differ in shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// There is no distance.
+    /// The frame has no distance.
     #[error("no distance found, a plane of metres expected: denoising needs it")]
     DistanceMissing,
 }

@@ -19,8 +19,8 @@ const CUTOFF: f64 = 3.0;
 /// Variance that the guide keeps of one pixel's where nothing is detail: (85/625)² = 0.018 would be left by two
 /// boxes of 5×5 one after the other, but the noise passes for detail here and there. Measured on flat areas.
 const SMOOTHED_VARIANCE: f64 = 0.06;
-/// The noise has a say in which pixels lie on one plane; its variance is larger by this than that of a plane fitted to
-/// given ones. Measured on flat areas: 1.1 where nothing was left out, 1.4 over all pixels.
+/// Factor on the variance, because the noise has an influence on which pixels count as lying on the plane. Measured
+/// on flat areas: 1.1 where nothing was left out, 1.4 over all pixels.
 const CHOSEN_BY_NOISE: f64 = 1.2;
 /// Pixels in less than two dimensions determine no plane: least ratio of the determinant of their spread to the
 /// square of half its trace.
@@ -39,7 +39,7 @@ impl Guide {
         bytes(&self.distance_m) + bytes(&self.detail)
     }
 
-    /// Writes the denoised distances, NaN where the pixel takes no part, and into `left` the share of each pixel's
+    /// Writes the denoised distances, NaN where the pixel does not count, and into `left` the share of each pixel's
     /// variance that is left.
     pub(super) fn denoise(
         &mut self,
@@ -108,7 +108,7 @@ impl Guide {
         members
     }
 
-    /// `a²`, reduced by the biweight of the guide's distance from the plane; 0 where the pixel takes no part.
+    /// `a²`, reduced by the biweight of the guide's distance from the plane; 0 where the pixel does not count.
     fn weight(&self, image: Image<'_>, k: f64, index: usize, plane: f64) -> f64 {
         if image.distance_m[index].is_nan() {
             return 0.0;

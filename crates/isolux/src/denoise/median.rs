@@ -4,11 +4,11 @@ use super::image::Image;
 
 /// Pixels to either side.
 pub(super) const RADIUS: usize = 1;
-/// Variance of the median of nine normal values, of one's own (D. Teichroew, "Tables of expected values of order
-/// statistics", Ann. Math. Statist. 27, 1956).
+/// Variance of the median of nine normal values, over that of a single one (D. Teichroew, "Tables of expected
+/// values of order statistics", Ann. Math. Statist. 27, 1956).
 pub(super) const VARIANCE_LEFT: f32 = 0.166;
 
-/// Writes the medians; NaN where the pixel takes no part.
+/// Writes the medians; NaN where the pixel does not count.
 pub(super) fn denoise(image: Image<'_>, out: &mut [f32]) {
     let width = image.shape.width;
     if width == 0 {

@@ -1,4 +1,4 @@
-//! How noisy the distances of a frame are: `σ_d² = k / a²`.
+//! Estimates the noise of a frame's distances: `σ_d² = k / a²`, with k in m² DN².
 //!
 //! `σ_d = c / (4√2 π f) · σ_n / a` (error propagation through eq. 1). Frequency and bin noise are seldom known, so
 //! k is estimated from the distances: the mixed second difference of 2×2 pixels cancels every slope and every edge
@@ -12,7 +12,7 @@ type Bins = BitHistogram<18>;
 
 /// About this many differences are enough: the standard error of the median is then below 1 %.
 const SAMPLES: usize = 1 << 16;
-/// Fewer make no estimate.
+/// Least number of differences for an estimate.
 const LEAST_SAMPLES: u32 = 16;
 /// Working memory of the estimate.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,7 @@ impl NoiseScale {
         self.bins.bytes()
     }
 
-    /// `k` in m² DN²; 0 where the frame tells no noise, so that nothing is denoised.
+    /// `k` in m² DN²; 0 where the frame shows no noise, so that nothing is denoised.
     pub(super) fn estimate(&mut self, image: Image<'_>) -> f64 {
         self.bins.clear();
         let width = image.shape.width;
@@ -55,7 +55,7 @@ impl NoiseScale {
         deviation * deviation
     }
 
-    /// The median, taken as evenly spread within its bin.
+    /// The median; the values of a bin are assumed to be evenly spread.
     fn median(&self, count: u32) -> f64 {
         // Bin 0 holds the zeros.
         let Some((bin, rank)) = self.bins.find(count as usize / 2).filter(|(bin, _)| *bin > 0) else {

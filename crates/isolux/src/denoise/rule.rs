@@ -1,4 +1,4 @@
-//! The rules and what they are called.
+//! The rules and their names.
 
 use super::temporal::TemporalMean;
 use super::{facet, median, wiener};

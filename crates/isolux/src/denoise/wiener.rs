@@ -6,8 +6,8 @@
 //! local statistics", PAMI 2, 1980, with weights.)
 //!
 //! Lee's `α = clamp(1 − n²/v, 0, 1)` pulls a bar of three pixels by 7 to 12 % towards its background at a
-//! signal-to-noise ratio of 4.5. With the square of the share, `α = clamp(1 − (q n²/v)², 0, 1)`, what stands out clearly
-//! is left alone; q = 1.15 lets the variance of flat areas, which scatters about n², pass for noise.
+//! signal-to-noise ratio of 4.5. With the square of the share, `α = clamp(1 − (q n²/v)², 0, 1)`, clear detail is
+//! not changed; with q = 1.15, the variance of flat areas, which scatters about n², counts as noise.
 //!
 //! With `σ_d² = k/a²`, the weights are `a²/k`, and `n² = k N / Σa²`.
 
@@ -43,8 +43,8 @@ impl Wiener {
         self.moments.bytes() + self.answers.bytes()
     }
 
-    /// Writes the denoised distances, NaN where the pixel takes no part, and into `detail` the mean α of each pixel
-    /// that does. Without noise (`k` = 0) everything is detail.
+    /// Writes the denoised distances, NaN where the pixel does not count, and into `detail` the mean α of the other
+    /// pixels. Without noise (`k` = 0) everything is detail.
     pub(super) fn denoise(
         &mut self,
         image: Image<'_>,
@@ -200,7 +200,7 @@ fn combine(sums: &[Vec<f64>; 3], distance_m: &[f32], out: &mut [f32]) {
     let [valid, alpha, rest] = sums.each_ref().map(|sums| &sums[..count]);
     let distance_m = &distance_m[..count];
     for x in 0..count {
-        // NaN where the pixel takes no part.
+        // NaN where the pixel does not count.
         out[x] = ((alpha[x] * f64::from(distance_m[x]) + rest[x]) / valid[x]) as f32;
     }
 }

@@ -1,4 +1,4 @@
-//! What is known of each pixel besides its value.
+//! Flags of pixels.
 
 use bitflags::bitflags;
 

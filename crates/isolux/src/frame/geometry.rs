@@ -1,4 +1,4 @@
-//! Pinhole geometry: unit rays, and the step between radial distance and depth.
+//! Pinhole geometry: rays, and the ratio of radial distance to depth.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! The integration time of a frame: which time a pixel has, and when two times count as one.
+//! The integration time of a frame, and when two times count as equal.
 
 use super::Plane;
 
@@ -15,7 +15,7 @@ pub enum IntegrationTime {
 }
 
 impl IntegrationTime {
-    /// Times less than this factor apart count as one: cameras report them with jitter.
+    /// Times that differ by less than this factor count as equal: cameras report them with jitter.
     pub const SAME_RATIO: f64 = 1.01;
 
     /// Time of a pixel, µs; `None` where it is unknown: not recorded, or no positive number.

@@ -123,7 +123,7 @@ impl Frame {
         self.phase_samples.iter().flatten().try_for_each(|bin| bin.expect_shape("phase_samples", shape))
     }
 
-    /// True where the amplitude may enter a statistic.
+    /// True when the pixel is not INVALID, so that its amplitude may enter a statistic.
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
         !self.flags.values()[index].contains(PixelFlags::INVALID)

@@ -1,4 +1,5 @@
-//! From the four raw bins to amplitude, phase, distance and intensity.
+//! Demodulation: amplitude (eq. 1 of Stürmer, Penne and Hornegger 2008) and radial distance from the four raw bins
+//! A1..A4, DN.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,13 +12,13 @@ pub const SPEED_OF_LIGHT_M_PER_S: f64 = 299_792_458.0;
 /// section 2).
 pub const CLIPPED_SHARE: f64 = 0.985;
 
-/// How a vendor delivers the bins: vendors differ in order and sign.
+/// Order and sign in which a vendor delivers the bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PhaseConvention {
     /// `order[k]` is the position, in the recording, of the paper's bin A(k+1). A permutation of 0..4.
     pub order: [usize; 4],
-    /// `true` where the phase runs the other way, i.e. φ → −φ.
+    /// `true` where the phase has the opposite sign, φ → −φ.
     pub reversed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Noise from differences: what neighbours in space or time do not share.
+//! Noise estimated from differences between neighbours in space or time.
 
 /// Share of the largest differences left out, so that edges and movement do not count as noise.
 const TRIMMED_SHARE: f64 = 0.05;

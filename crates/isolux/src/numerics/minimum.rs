@@ -1,4 +1,4 @@
-//! The least of a function of one number.
+//! The minimum of a function of one variable.
 
 /// Where `cost` is least between the `bounds`: the best of 24 intervals, then the golden section in it and its
 /// neighbours, down to 1e-9 of the bounds.

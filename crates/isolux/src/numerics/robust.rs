@@ -1,4 +1,4 @@
-//! Weights of residuals, so that outliers do not decide: Huber's and Tukey's.
+//! Robust weights of residuals: Huber's and Tukey's.
 
 /// Huber's tuning constant: 95 % efficiency at normal errors.
 const HUBER: f64 = 1.345;

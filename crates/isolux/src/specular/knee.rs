@@ -8,7 +8,7 @@ use super::histogram::HistogramRule;
 use crate::frame::PixelFlags;
 use crate::numerics::quantile::PositiveQuantiles;
 
-/// M − c over c: room for the highlights above the cutoff.
+/// (M − c) / c: the range into which highlights are compressed, relative to the cutoff.
 const ROOM: f64 = 0.25;
 
 /// Parameters of the knee.

@@ -1,4 +1,4 @@
-//! Rules as texts: the name, then parameters: `histogram`, `percent:quantile=0.9`.
+//! Rules as texts: the name, then parameters, such as `histogram` or `percent:quantile=0.9`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,11 +6,11 @@ use std::str::FromStr;
 use super::{HistogramRule, KneeRule, PercentRule, SigmaRule, SpecularRule};
 use crate::names::{UnknownName, by_name, one_of};
 
-/// Why a text is no rule.
+/// Why a text is not a rule.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RuleError {
-    /// There is no such rule.
+    /// No rule has this name.
     #[error(transparent)]
     Rule(#[from] UnknownName),
     /// The rule has no such parameter.
@@ -45,7 +45,7 @@ impl SpecularRule {
     /// The names of the rules.
     pub const NAMES: &'static [&'static str] = &["histogram", "sigma", "percent", "knee"];
 
-    /// Every rule with its parameters as they are unless given.
+    /// Every rule with its default parameters.
     #[must_use]
     pub fn all() -> [Self; 4] {
         [

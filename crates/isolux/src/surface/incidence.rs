@@ -32,7 +32,7 @@ impl Incidence {
         self.normals.cosine(index, intrinsics)
     }
 
-    /// The same for all pixels of a frame, row by row.
+    /// Cosines of all pixels of a frame, row by row.
     pub(crate) fn cosines(
         &mut self,
         frame: &Frame,

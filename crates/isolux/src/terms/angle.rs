@@ -26,11 +26,11 @@ pub struct Angle {
     pub standard_error: f64,
     /// Least and greatest cosine of the fit. Below, pixels are extrapolated, down to 0.2, and flagged.
     pub valid_cosine: [f64; 2],
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
-    /// How well all factors together fit: windows of the target.
+    /// How well all factors together fit the observations.
     pub fit: FitQuality,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
@@ -40,7 +40,7 @@ impl Angle {
     /// Beyond 16, a surface is a mirror, which cannot be corrected.
     const LARGEST_EXPONENT: f64 = 16.0;
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.

@@ -8,9 +8,9 @@ use std::fmt::Display;
 pub struct ParameterError {
     /// Path of the field in the calibration file.
     pub field: String,
-    /// What stands there.
+    /// The value found.
     pub found: String,
-    /// What should.
+    /// What was expected.
     pub expected: &'static str,
 }
 
@@ -26,7 +26,7 @@ pub(crate) trait Parameters {
     /// Name in the calibration file.
     const NAME: &'static str;
 
-    /// Refuses parameters that no fit can have written; `here` is where they stand in the file.
+    /// Refuses parameters that no fit gives; `here` is their place in the file.
     fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError>;
 }
 

@@ -1,6 +1,6 @@
 //! The correction terms. Each module holds the parameters of a term, the correction and the fit. A term has the
 //! same name in code, in the calibration file and on the command line. Distances d are radial, in m; integration
-//! times t in µs; amplitudes in DN; multipliers are dimensionless and 1 at the reference.
+//! times t in µs; amplitudes in DN. Multipliers are dimensionless; those over time and distance are 1 at the reference.
 //!
 //! | term | corrects | source |
 //! |---|---|---|
@@ -57,7 +57,7 @@ pub struct Source {
     pub frames_left_out: usize,
 }
 
-/// How well a term describes what it was fitted on.
+/// How well a term fits its recordings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitQuality {

@@ -59,7 +59,7 @@ pub struct Noise {
     /// For frames with intensity; absent where the sweep had none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by_intensity: Option<IntensityNoise>,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits: groups of like pixels, and the relative error of their standard deviation.
     pub fit: FitQuality,
@@ -75,7 +75,7 @@ impl Noise {
         NoiseModel { by_amplitude: self.by_amplitude, by_intensity: self.by_intensity }
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.

@@ -1,4 +1,4 @@
-//! Polynomials of degree 3 over distance: least squares, and the form that the hot loop evaluates.
+//! Polynomials of degree 3 over distance: least squares, and the form that the loop over pixels evaluates.
 
 use nalgebra::{DMatrix, DVector};
 

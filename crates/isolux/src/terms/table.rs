@@ -1,4 +1,4 @@
-//! A positive function of the distance as a table for the hot loop: no logarithm, no exponential.
+//! A positive function of the distance as a table, so that the loop over pixels needs no logarithm or exponential.
 //!
 //! The cells are equal parts of the octaves of the distance, so that a cell's number and the place in it are bits of
 //! the f32: the exponent and the upper bits of the mantissa are the cell, the lower bits the place. In a cell the

@@ -24,8 +24,8 @@ pub(crate) struct Coefficient {
     pub low_95: f64,
     /// Upper end of the 95 % confidence interval.
     pub high_95: f64,
-    /// Share of the column's variance (within groups) that the other columns do not explain, 0..=1: near 0, the
-    /// column can hardly be told from the others.
+    /// Share of the column's variance (within groups) that the other columns do not explain, 0..=1. Near 0, its
+    /// effect can hardly be separated from theirs.
     pub tolerance: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Can every column be told from the others?
+//! Checks that no column is constant or a combination of others.
 
 use nalgebra::DMatrix;
 

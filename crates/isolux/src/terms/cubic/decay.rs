@@ -12,24 +12,24 @@ pub struct DecayPoint {
 /// The reference decay of one integration time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decay {
-    /// Integration time, µs; `None` where the recording does not know it.
+    /// Integration time, µs; `None` where it is unknown.
     pub integration_time_us: Option<f64>,
     /// Positions, in any order.
     pub points: Vec<DecayPoint>,
 }
 
-/// What became of one reference decay in the fit.
+/// How the fit used one reference decay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecayUse {
     /// Integration time of the decay, µs.
     pub integration_time_us: Option<f64>,
-    /// How it was brought to the common scale.
+    /// How it was scaled.
     pub scaling: Scaling,
     /// Root mean square of the relative error that the pooled cubic leaves on it.
     pub residual: Option<f64>,
 }
 
-/// How a decay was brought to the common scale.
+/// How a decay was brought to the scale of the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scaling {
     /// Normalized by its own cubic at the reference distance.

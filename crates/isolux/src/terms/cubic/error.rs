@@ -28,7 +28,7 @@ pub enum CubicError {
         /// Farthest usable distance, m.
         max_m: f64,
     },
-    /// The multiplier is not positive, or beyond all reason, somewhere in its range.
+    /// The multiplier is impossible somewhere in its range: not positive, or outside 1e-12 to 1e12.
     #[error(
         "the cubic is {multiplier:.3e} at {distance_m:.3} m, a multiplier from 1e-12 to 1e12 expected: record more \
          distances, evenly spread"

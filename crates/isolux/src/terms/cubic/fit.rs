@@ -1,11 +1,11 @@
-//! From reference decays to the pooled cubic.
+//! Fits the pooled cubic to reference decays.
 
 use super::model::impossible_multiplier;
 use super::{Cubic, CubicError, Decay, DecayUse, Scaling};
 use crate::terms::polynomial::{distinct, evaluate, fit_relative};
 use crate::terms::{FitQuality, root_mean_square};
 
-/// A decay turned over: (distance, 1 / amplitude), on the scale of the others once `scaled`.
+/// An inverted decay: (distance, 1 / amplitude), on the scale of the others once `scaled`.
 struct Inverse<'a> {
     decay: &'a Decay,
     points: Vec<(f64, f64)>,
@@ -15,10 +15,10 @@ struct Inverse<'a> {
 impl Cubic {
     /// Fits the pooled cubic of several reference decays; says for each decay how it was used.
     ///
-    /// Every decay that covers the reference distance with at least four positions is normalized there by its
-    /// own cubic. The others are scaled onto the pool where they overlap it: extrapolating them to the reference
-    /// would spoil the pool. Held-out residual: each normalized decay predicted from the others or, with one
-    /// decay, each inner position from the rest.
+    /// Every decay that covers the reference distance with at least four positions is normalized there by its own
+    /// cubic. The others are scaled onto the pool where they overlap it, because extrapolating them to the
+    /// reference would distort the pool. Held-out residual: each normalized decay predicted from the others or,
+    /// with one decay, each inner position from the rest.
     ///
     /// # Errors
     /// [`CubicError`] when the distances are too few, none covers the reference, or the fit is not positive.
@@ -69,7 +69,7 @@ impl Inverse<'_> {
     }
 }
 
-/// Turns a decay over and normalizes it at the reference where it reaches there.
+/// Inverts a decay and normalizes it at the reference distance if it covers that.
 fn invert(decay: &Decay, reference_m: f64) -> Inverse<'_> {
     let mut points: Vec<_> = decay.points.iter().map(|p| (p.distance_m, 1.0 / p.amplitude_dn)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));

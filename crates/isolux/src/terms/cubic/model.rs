@@ -15,13 +15,13 @@ pub struct Cubic {
     pub version: u32,
     /// Coefficients of 1, d, d², d³ with d in metres; P(reference distance) = 1.
     pub coefficients: [f64; 4],
-    /// Distances that the reference decays covered, m. Outside, the multiplier goes on with the slope of d².
+    /// Distances that the reference decays covered, m. Outside, the multiplier continues with the slope of d².
     pub valid_distance_m: [f64; 2],
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits.
     pub fit: FitQuality,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
@@ -29,13 +29,13 @@ impl Cubic {
     /// Parameter version that this library writes.
     pub const VERSION: u32 = 1;
 
-    /// The multiplier in the form that the hot loop evaluates.
+    /// The multiplier in the form that the loop over pixels evaluates.
     #[must_use]
     pub fn distance_law(&self) -> DistanceLaw {
         DistanceGain::between(self.coefficients, self.valid_distance_m[0], self.valid_distance_m[1]).into()
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
@@ -69,7 +69,7 @@ impl Parameters for Cubic {
     }
 }
 
-/// A distance in the range (m) where the multiplier is not positive, or beyond all reason, and its value.
+/// A distance in the range (m) where the multiplier is impossible, and its value.
 pub(super) fn impossible_multiplier(coefficients: [f64; 4], [min_m, max_m]: [f64; 2]) -> Option<(f64, f64)> {
     const STEPS: u32 = 256;
     let distances = (0..=STEPS).map(|step| min_m + (max_m - min_m) * f64::from(step) / f64::from(STEPS));

@@ -1,8 +1,8 @@
-//! Why no table could be made.
+//! Why no table could be fitted.
 
 use crate::advice::Advice;
 
-/// Why no table could be made.
+/// Why no table could be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LutError {

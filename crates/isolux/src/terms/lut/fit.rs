@@ -1,4 +1,4 @@
-//! From the mean curve of an exposure sweep to the table.
+//! Fits the table to the mean curve of an exposure sweep.
 
 use super::model::interpolate_log_log;
 use super::{ExposureSample, Lut, LutError, RelativeSample};
@@ -17,7 +17,7 @@ impl Lut {
         Self::of_curve(&curve, reference_time_us)
     }
 
-    /// The same for a curve that is known but for its scale.
+    /// The same for a curve of unknown scale.
     ///
     /// # Errors
     /// As [`Lut::fit`].

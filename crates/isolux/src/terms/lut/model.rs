@@ -1,4 +1,4 @@
-//! The parameters of the table, their check, and what the table says of a time.
+//! The parameters of the table, their check, and the multiplier of a time.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,23 +16,23 @@ pub struct Lut {
     pub integration_time_us: Vec<f64>,
     /// Multiplier S(t) at each of them, dimensionless.
     pub multiplier: Vec<f64>,
-    /// Range in which the table holds, µs. It ends at the peak of the mean amplitude: beyond, over-saturation
-    /// makes the curve fall again.
+    /// Range in which the table is valid, µs. It ends at the peak of the mean amplitude, beyond which
+    /// over-saturation makes the curve fall.
     pub valid_integration_time_us: [f64; 2],
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits.
     pub fit: FitQuality,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
-/// What the table says of one integration time.
+/// The multiplier of one integration time, or none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LutAnswer {
     /// Multiplier inside the valid range.
     Inside(f64),
-    /// Below the lowest sample: multiplier continued in proportion to 1/t.
+    /// Below the valid range: the multiplier, extrapolated in proportion to 1/t.
     Below(f64),
     /// Above the valid range: over-saturated, no multiplier.
     Refused,
@@ -60,7 +60,7 @@ impl Lut {
         }
     }
 
-    /// The mean curve behind the table, 1 at the reference time.
+    /// The mean curve that the table is the inverse of, 1 at the reference time.
     #[must_use]
     pub fn curve(&self) -> Vec<RelativeSample> {
         let sample = |(&integration_time_us, multiplier): (&f64, &f64)| RelativeSample {
@@ -77,7 +77,7 @@ impl Lut {
         Self { fitted_on, warnings, ..self }
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.

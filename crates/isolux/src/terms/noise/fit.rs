@@ -1,10 +1,10 @@
-//! Fitting the variances: weighted least squares over groups of like pixels, no coefficient below 0.
+//! Fits the variances: weighted least squares over groups of similar pixels, no coefficient below 0.
 
 use super::{AmplitudeNoise, IntensityNoise, Noise};
 use crate::numerics::nnls;
 use crate::terms::{FitQuality, Source, root_mean_square};
 
-/// The noise of pixels of like amplitude, intensity and integration time.
+/// The noise of pixels of similar amplitude, intensity and integration time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseCell {
     /// Mean integration time, µs; `None` where it is unknown.
@@ -15,14 +15,14 @@ pub struct NoiseCell {
     pub intensity_dn: Option<f64>,
     /// Variance of one amplitude, DN².
     pub variance_dn2: f64,
-    /// Differences that the variance rests on.
+    /// Number of differences that the variance was computed from.
     pub differences: f64,
 }
 
 /// Cells below this signal-to-noise ratio do not count: the amplitude is Rician there, and varies less.
 const LEAST_SNR: f64 = 3.0;
-/// Relative error of a variance by the intensity beside that of chance: a full well compresses the noise. Without it, a
-/// cell of a million pixels would be all that is fitted.
+/// Relative error of a variance by the intensity, besides that of chance, because saturation reduces the noise.
+/// Without it, a cell of a million pixels would outweigh all others.
 const COMPRESSION: f64 = 0.1;
 /// The weights depend on the fitted variances; they settle to a per mille within this many rounds.
 const ROUNDS: usize = 8;

@@ -3,7 +3,7 @@
 use super::{Places, Profile, Surface};
 use crate::frame::Plane;
 
-/// Steps on the way to the origin in which the edge of the support is looked for.
+/// Steps on the line to the origin in which the edge of the support is searched.
 const STEPS: u32 = 128;
 
 /// The multipliers of a whole image.
@@ -30,8 +30,8 @@ impl Profile {
         ProfileGains { gains, outside }
     }
 
-    /// The last supported place on the way from the origin; where there is none, the middle of the nearest supported
-    /// cell.
+    /// The last supported place on the line from the origin; where there is none, the middle of the nearest
+    /// supported cell.
     fn nearest_supported(&self, places: &Places, [x, y]: [f64; 2]) -> [f64; 2] {
         let on_the_way = (0..STEPS).rev().map(|step| f64::from(step) / f64::from(STEPS));
         if let Some(share) = on_the_way.into_iter().find(|share| self.supports([share * x, share * y])) {

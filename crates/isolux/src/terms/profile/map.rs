@@ -1,4 +1,4 @@
-//! The profile's numbers, what they say of a place, and their check.
+//! The coefficients of the profile, its value at a place, and the check.
 
 use super::{Places, RADIAL, Surface};
 use crate::terms::check::{Check, ParameterError};
@@ -24,7 +24,7 @@ impl Map {
         Surface::new(&self.places).sum(&self.radial, &self.tensor, place)
     }
 
-    /// Refuses what no fit can have found.
+    /// Refuses values that no fit gives.
     pub(super) fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         let (format, shape) = (1..=Self::LARGEST, self.places.shape);
         let fine = format.contains(&shape.height) && format.contains(&shape.width);

@@ -1,4 +1,4 @@
-//! The fitted term: a profile, where it holds, where it comes from, and all in the calibration file.
+//! The fitted term: the profile, its support, its sources, and their form in the calibration file.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,13 +16,13 @@ pub struct Profile {
     /// The profile; valid for images of its shape only. In the calibration file, its fields stand beside the
     /// others.
     pub map: Map,
-    /// Where it was seen: a map of 12 rows of 16 cells, `#` where it holds.
+    /// Its support: a map of 12 rows of 16 cells, `#` where the profile was observed.
     pub support: Vec<String>,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
-    /// How well all factors together fit: windows of the target.
+    /// How well all factors together fit the observations.
     pub fit: FitQuality,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
@@ -48,7 +48,7 @@ impl Profile {
         self.map.ln_gain(place)
     }
 
-    /// True where the profile was seen.
+    /// True where the profile was observed.
     #[must_use]
     pub fn supports(&self, place: [f64; 2]) -> bool {
         self.places().cell(place).is_some_and(|cell| self.supports_cell(cell))
@@ -67,7 +67,7 @@ impl Profile {
         (0..down).map(|row| (row * along..(row + 1) * along).map(mark).collect()).collect()
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
@@ -75,7 +75,7 @@ impl Profile {
         self.check_at(&Check::of(Self::NAME))
     }
 
-    /// A gain beyond all reason in a supported cell.
+    /// An impossible gain in a supported cell, if there is one.
     fn impossible(&self) -> Option<f64> {
         let places = self.map.places;
         let cells = (0..Places::CELLS[0] * Places::CELLS[1]).filter(|&cell| self.supports_cell(cell));

@@ -1,4 +1,4 @@
-//! The functions that the logarithm of the illumination profile is made of.
+//! The basis functions of the logarithm of the illumination profile.
 
 use nalgebra::DMatrix;
 
@@ -10,7 +10,7 @@ pub(crate) const TENSOR: [usize; 2] = [8, 6];
 /// `r²` and `r⁴`.
 pub(crate) const RADIAL: usize = 2;
 
-/// `ln v = c₁ r² + c₂ r⁴ + Σ c_kl B_k(x) B_l(y)`: the fall-off of lobe and lens, and what is not round about it.
+/// `ln v = c₁ r² + c₂ r⁴ + Σ c_kl B_k(x) B_l(y)`: the radial fall-off of lobe and lens, and the deviation from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Surface {
     bases: [Basis; 2],

@@ -26,7 +26,7 @@ pub struct AmplitudeResponse {
     pub increment: Vec<f64>,
     /// Largest amplitude of the fit, DN; a pixel above is refused.
     pub largest_dn: f64,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits: relative deviation of the linearised amplitudes from proportion to time.
     pub fit: FitQuality,

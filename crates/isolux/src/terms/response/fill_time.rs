@@ -44,7 +44,7 @@ impl FillTimes {
     /// For `times_us` in increasing order.
     pub(super) fn new(times_us: &[f64], softness: f64) -> Self {
         let (well, longest) = (SoftWell { softness }, times_us.last().copied().unwrap_or(1.0));
-        // A pixel that is full at its second time has told nothing.
+        // A pixel that is full at its second time does not determine its fill time.
         let (low, high) = (times_us.get(1).copied().unwrap_or(longest).ln(), (LARGEST * longest).ln());
         let count = ((high - low) / STEP).ceil().max(2.0) as usize;
         let ln_taus: Vec<f64> = (0..=count).map(|i| low + STEP * i as f64).collect();

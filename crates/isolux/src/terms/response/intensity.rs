@@ -32,7 +32,7 @@ pub struct IntensityResponse {
     pub clip_dn: Option<f64>,
     /// Largest intensity plus amplitude that is inverted, DN; a pixel above is refused.
     pub largest_dn: f64,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits: relative deviation of the linearised amplitudes from proportion to time.
     pub fit: FitQuality,

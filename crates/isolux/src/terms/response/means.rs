@@ -111,7 +111,7 @@ pub(super) fn plateau(series: impl IntoIterator<Item = Vec<(f64, f64)>>) -> Opti
             }
         }
     }
-    // Noise stops anywhere, a clip at the top.
+    // Noise may stop values at any level, a clip only at the largest.
     let top = levels.iter().copied().fold(0.0, f64::max);
     levels.retain(|level| *level > 0.97 * top);
     (levels.len() >= LEAST_VALUES).then(|| crate::numerics::statistics::median(&mut levels)).flatten()

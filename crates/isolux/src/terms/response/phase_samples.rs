@@ -27,7 +27,7 @@ pub struct PhaseSampleResponse {
     /// Modulation frequency, Hz; if it is known, the distance is corrected too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modulation_frequency_hz: Option<f64>,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits: relative deviation of the linearised bins from proportion to time.
     pub fit: FitQuality,

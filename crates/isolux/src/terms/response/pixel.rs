@@ -29,7 +29,7 @@ pub struct PixelResponse {
     /// τ of every pixel, µs: one string per image row, values by spaces, `-` where no compression is seen.
     #[serde(with = "map_rows")]
     pub full_well_time_us: Vec<Vec<Option<f32>>>,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits: relative deviation of the linearised amplitudes from proportion to time.
     pub fit: FitQuality,

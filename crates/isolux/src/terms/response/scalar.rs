@@ -1,4 +1,4 @@
-//! Tier T0, `scalar`: one fill time for the whole image. It is a lookup table with two parameters.
+//! Tier T0, `scalar`: one fill time for the whole image, which corrects like a lookup table with two parameters.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct ScalarResponse {
     pub softness: f64,
     /// Range in which it holds, µs. It ends at the peak of the mean amplitude.
     pub valid_integration_time_us: [f64; 2],
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits.
     pub fit: FitQuality,
@@ -80,7 +80,7 @@ impl Parameters for ScalarResponse {
         let fine = (1e-3..=1e12).contains(&tau_us);
         here.at("full_well_time_us").require(fine, tau_us, "a time in µs, 1e-3 to 1e12")?;
         SoftWell { softness: self.softness }.check_at(here)?;
-        // Beyond ten wells nothing that is left of a modulation means anything.
+        // Beyond ten wells, what is left of the modulation is not usable.
         let inside = 0.0 < min_us && min_us < max_us && max_us <= 10.0 * tau_us;
         let range = format!("{min_us}..{max_us}");
         here.at("valid_integration_time_us").require(inside, range, "a range of µs up to 10 τ")

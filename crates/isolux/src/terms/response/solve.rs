@@ -1,5 +1,5 @@
-//! The well that all pixels share, from what they delivered at several times: robust least squares in which every
-//! pixel's own light is eliminated (Schur complement), so that thousands of pixels cost as much as their points.
+//! Fits the well that all pixels share to their values at several times: robust least squares in which the light of
+//! every pixel is eliminated (Schur complement), so that the time grows only with the number of points.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 

@@ -29,7 +29,7 @@ pub enum SplineError {
     /// The positions do not determine the law.
     #[error("the positions do not determine a law over distance: record more distances, evenly spread")]
     Undetermined,
-    /// The law is beyond all reason somewhere.
+    /// The multiplier is impossible somewhere.
     #[error("the law is impossible ({found}): record more distances, evenly spread")]
     Impossible {
         /// What is.

@@ -1,4 +1,4 @@
-//! From reference decays to a [`Spline`].
+//! Fits a [`Spline`] to reference decays.
 //!
 //! No position is corrected by the table over integration time. The table multiplies each decay by one number,
 //! which the decay's level absorbs: the fit is the same with and without it. The saturation that the table contains
@@ -17,7 +17,7 @@ use crate::terms::{FitQuality, root_mean_square};
 /// Equal intervals of ln d between the outermost positions; the curvature weight makes it smooth, not their number.
 const INTERVALS: usize = 24;
 
-/// What became of one reference decay in the fit.
+/// How the fit used one reference decay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplineUse {
     /// Integration time of the decay, µs.
@@ -128,8 +128,8 @@ fn covers(decay: &Decay, reference_m: f64) -> bool {
     (min_m..=max_m).contains(&reference_m)
 }
 
-/// The decays that overlap, directly or through others, one that covers the reference, and the range of all of them.
-/// A single point says nothing beyond its own level, and a value that has no logarithm nothing at all.
+/// The decays that overlap, directly or through others, one that covers the reference, and the range of all of
+/// them. A single point only determines the level of its decay, and values without a logarithm are not used.
 fn connected(decays: &[Decay], reference_m: f64) -> Result<(Vec<usize>, [f64; 2]), SplineError> {
     let usable = |decay: &Decay| {
         let fine = |x: f64| x > 0.0 && x.is_finite();

@@ -1,4 +1,4 @@
-//! The law over distance: its numbers, what they say of a distance, and their check.
+//! The law over distance: its coefficients, its value at a distance, and the check.
 
 use super::Harmonic;
 use crate::numerics::bspline::Basis;
@@ -10,7 +10,7 @@ use crate::terms::{DistanceGain, DistanceLaw, DistanceTable, MULTIPLIER_LIMITS};
 pub struct Law {
     /// Radial distance at which h = 1, m: that of the calibration.
     pub reference_distance_m: f64,
-    /// Distances that were observed, m. Outside, h goes on with the slope of d⁻².
+    /// Distances that were observed, m. Outside, h continues with the slope of d⁻².
     pub valid_distance_m: [f64; 2],
     /// Coefficients of the cubic B-splines on equal intervals of ln d between the valid distances: three more than
     /// intervals, dimensionless.
@@ -41,8 +41,9 @@ impl Law {
         (-self.ln_response(distance_m)).exp()
     }
 
-    /// The multiplier in the form that the hot loop evaluates: `(d/d_ref)²` at every distance, whose range flags
-    /// what is extrapolated, times the table of `exp(−deviation)`, which stays as it is outside the range.
+    /// The multiplier in the form that the loop over pixels evaluates: `(d/d_ref)²` at every distance, whose range
+    /// decides which pixels are flagged as extrapolated, times a table of `exp(−deviation)`, which is constant
+    /// outside the range.
     #[must_use]
     pub fn distance_law(&self) -> DistanceLaw {
         let [min_m, max_m] = self.valid_distance_m;
@@ -51,7 +52,7 @@ impl Law {
         DistanceLaw { polynomial: DistanceGain::between(square, min_m, max_m), table: Some(table) }
     }
 
-    /// What ln h has besides the inverse square; outside the valid distances, its value at the nearer end.
+    /// Deviation of ln h from the inverse square; outside the valid distances, its value at the nearer end.
     fn deviation(&self, distance_m: f64) -> f64 {
         let [min_m, max_m] = self.valid_distance_m;
         self.smooth_deviation(distance_m.max(min_m).min(max_m))
@@ -68,7 +69,7 @@ impl Law {
         Basis::new(min_m.ln(), max_m.ln(), self.coefficients.len().saturating_sub(3).max(1))
     }
 
-    /// Refuses what no fit can have found.
+    /// Refuses values that no fit gives.
     pub(super) fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         let [min_m, max_m] = self.valid_distance_m;
         // As far as the tables of the hot loop reach.
@@ -104,7 +105,7 @@ impl Law {
         here.require(fine, largest, "coefficients from -0.5 to 0.5")
     }
 
-    /// A distance in the valid range where the multiplier is beyond all reason, and its value.
+    /// A distance in the valid range where the multiplier is impossible, and its value.
     fn impossible(&self) -> Option<(f64, f64)> {
         const STEPS: u32 = 512;
         let [min_m, max_m] = self.valid_distance_m;

@@ -1,4 +1,4 @@
-//! The fitted term: a law over distance, where it comes from, and both in the calibration file.
+//! The fitted term: the law over distance, its sources, and their form in the calibration file.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,11 +14,11 @@ pub struct Spline {
     pub version: u32,
     /// The law. Its fields stand beside the others in the calibration file.
     pub law: Law,
-    /// What it was fitted on.
+    /// The recordings that it was fitted to.
     pub fitted_on: Vec<Source>,
     /// How well it fits.
     pub fit: FitQuality,
-    /// What the user should know or record better.
+    /// Warnings of the fit: what the user should know or record better.
     pub warnings: Vec<String>,
 }
 
@@ -44,7 +44,7 @@ impl Spline {
         Self { fitted_on, warnings, ..self }
     }
 
-    /// Refuses parameters that no fit can have written.
+    /// Refuses parameters that no fit gives.
     ///
     /// # Errors
     /// [`ParameterError`] names the field.
