@@ -55,17 +55,6 @@ impl SpecularRule {
             Self::Knee(KneeRule::default()),
         ]
     }
-
-    /// The parameters that the rule may be given, the value of each as an example.
-    #[must_use]
-    pub fn notation(&self) -> &'static str {
-        match self {
-            Self::Histogram(_) => "histogram:occurrences=5",
-            Self::Sigma(_) => "sigma:deviations=4",
-            Self::Percent(_) => "percent:fraction=0.9 or percent:quantile=0.9",
-            Self::Knee(_) => "knee:occurrences=5",
-        }
-    }
 }
 
 impl fmt::Display for SpecularRule {
