@@ -3,8 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::step_names::DistanceStep;
 use crate::terms::check::{Check, ParameterError, Parameters, optional_term};
-use crate::terms::{Angle, Cubic, Lut, Noise, Profile, Response, Spline};
+use crate::terms::{Angle, Cubic, DistanceLaw, Lut, Noise, Profile, Response, Spline};
 
 /// Reference integration time of the paper (register 40 of the SR-3100), µs.
 pub const REFERENCE_TIME_US: f64 = 8200.0;
@@ -81,6 +82,32 @@ pub struct Terms {
     /// Noise of the amplitude.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
+}
+
+impl Terms {
+    /// Fitted laws over distance, the best first.
+    const DISTANCE_LAWS: [DistanceStep; 2] = [DistanceStep::Spline, DistanceStep::Cubic];
+
+    /// The best law over distance that is here.
+    pub(crate) fn best_distance(&self) -> Option<DistanceStep> {
+        Self::DISTANCE_LAWS.into_iter().find(|step| self.distance_law(*step).is_some())
+    }
+
+    /// The fitted law of a step and the distances (m) for which it is valid; `None` where it is not here, or for a
+    /// step that is not fitted.
+    pub(crate) fn distance_law(&self, step: DistanceStep) -> Option<(DistanceLaw, [f64; 2])> {
+        match step {
+            DistanceStep::Spline => {
+                let law = &self.spline.as_ref()?.law;
+                Some((law.distance_law(), law.valid_distance_m))
+            }
+            DistanceStep::Cubic => {
+                let cubic = self.cubic.as_ref()?;
+                Some((cubic.distance_law(), cubic.valid_distance_m))
+            }
+            DistanceStep::Square | DistanceStep::Eq5 | DistanceStep::None => None,
+        }
+    }
 }
 
 /// A camera's calibration, as its file holds it.

@@ -11,4 +11,14 @@ mod shapes;
 mod source;
 mod stream;
 
-pub(crate) use source::NativeSource;
+use std::path::Path;
+
+use self::source::NativeSource;
+use super::assemble::Assembled;
+use super::reading::Recording;
+use crate::error::RecordingError;
+
+/// Opens a native recording; what holds none is an error, which says why.
+pub(crate) fn open(path: &Path) -> Result<Option<Box<dyn Recording>>, RecordingError> {
+    Ok(Some(Box::new(Assembled::new(NativeSource::open(path)?)?)))
+}

@@ -3,7 +3,7 @@
 //! multipliers before.
 
 use crate::advice::RecordingKind;
-use crate::calibration::{Calibration, REFERENCE_DISTANCE_M};
+use crate::calibration::REFERENCE_DISTANCE_M;
 use crate::frame::Channels;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
@@ -33,25 +33,18 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>,
         return Ok(None);
     }
     let reference_m = planner.calibration.map_or(REFERENCE_DISTANCE_M, |c| c.reference.distance_m);
-    let fitted = |[min_m, max_m]: [f64; 2]| {
-        format!("1 at {reference_m} m, valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)")
-    };
-    let missing = || planner.missing(term, RecordingKind::DistanceSweep);
-    let terms = planner.calibration.map(|calibration| &calibration.terms);
     let (law, parameters) = match wanted {
-        DistanceStep::None => return Ok(None),
         DistanceStep::Square => (square::distance_law(reference_m), format!("(d / {reference_m} m)²")),
         DistanceStep::Eq5 => {
             let parameters = format!("((2d)² + 1) / ((2·{reference_m})² + 1), d in m");
             (eq5::distance_law(reference_m), parameters)
         }
-        DistanceStep::Spline => {
-            let spline = terms.and_then(|terms| terms.spline.as_ref()).ok_or_else(missing)?;
-            (spline.law.distance_law(), fitted(spline.law.valid_distance_m))
-        }
-        DistanceStep::Cubic => {
-            let cubic = terms.and_then(|terms| terms.cubic.as_ref()).ok_or_else(missing)?;
-            (cubic.distance_law(), fitted(cubic.valid_distance_m))
+        fitted => {
+            let law = planner.calibration.and_then(|calibration| calibration.terms.distance_law(fitted));
+            let missing = || planner.missing(term, RecordingKind::DistanceSweep);
+            let (law, [min_m, max_m]) = law.ok_or_else(missing)?;
+            let valid = format!("valid from {min_m:.3} to {max_m:.3} m, d² beyond (flagged)");
+            (law, format!("1 at {reference_m} m, {valid}"))
         }
     };
     Ok(Some(PlannedDistance { law, term, parameters }))
@@ -59,18 +52,14 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>,
 
 /// The distance step of the method; adds a note when `best` has no term for it.
 fn default_step(planner: &mut Planner<'_>) -> DistanceStep {
-    let holds =
-        |calibration: &Calibration| (calibration.terms.spline.is_some(), calibration.terms.cubic.is_some());
-    match (planner.choice.method, planner.calibration.map(holds)) {
+    match (planner.choice.method, planner.calibration) {
         (Method::Paper, _) => DistanceStep::Cubic,
         (Method::Best, None) => DistanceStep::Square,
-        (Method::Best, Some((true, _))) => DistanceStep::Spline,
-        (Method::Best, Some((false, true))) => DistanceStep::Cubic,
-        (Method::Best, Some((false, false))) => {
+        (Method::Best, Some(calibration)) => calibration.terms.best_distance().unwrap_or_else(|| {
             if planner.traits.channels.contains(Channels::DISTANCE) {
                 planner.notes.push(Note::NoDistanceTerm);
             }
             DistanceStep::None
-        }
+        }),
     }
 }
