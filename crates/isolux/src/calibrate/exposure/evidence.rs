@@ -8,9 +8,9 @@ use crate::terms::response::{AmplitudeStack, PixelMeans, PixelSeries};
 pub struct ResponseEvidence {
     /// Mean amplitudes of all pixels, NaN where one was invalid or saturated in any frame. Of a long sweep every
     /// second time, or fewer, as memory allows.
-    pub stack: AmplitudeStack,
+    pub(crate) stack: AmplitudeStack,
     /// Everything that pixels spread over the image delivered.
-    pub pixels: Vec<PixelSeries>,
+    pub(crate) pixels: Vec<PixelSeries>,
 }
 
 /// Amplitudes that the stack may hold, 64 MiB; while it grows, its memory is three times that for a moment.
