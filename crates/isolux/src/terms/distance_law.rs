@@ -8,9 +8,9 @@ use super::{DistanceGain, DistanceTable};
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceLaw {
     /// P, evaluated by the loop itself.
-    pub polynomial: DistanceGain,
+    pub(crate) polynomial: DistanceGain,
     /// t; none for laws that are polynomials.
-    pub table: Option<DistanceTable>,
+    pub(crate) table: Option<DistanceTable>,
 }
 
 impl From<DistanceGain> for DistanceLaw {
@@ -21,7 +21,7 @@ impl From<DistanceGain> for DistanceLaw {
 
 impl DistanceLaw {
     /// The law that leaves every amplitude as it is.
-    pub const ONE: Self = Self { polynomial: DistanceGain::ONE, table: None };
+    pub(crate) const ONE: Self = Self { polynomial: DistanceGain::ONE, table: None };
 
     /// The multiplier at one distance (m); NaN for NaN.
     #[must_use]
@@ -31,19 +31,19 @@ impl DistanceLaw {
 
     /// True where there is a table, whose values [`Self::scale`] multiplies by.
     #[must_use]
-    pub fn has_table(&self) -> bool {
+    pub(crate) fn has_table(&self) -> bool {
         self.table.is_some()
     }
 
     /// Multiplies `gains` by the table's values: what the polynomial does not tell. The slices have the same length.
-    pub fn scale(&self, distances_m: &[f32], gains: &mut [f32]) {
+    pub(crate) fn scale(&self, distances_m: &[f32], gains: &mut [f32]) {
         if let Some(table) = &self.table {
             table.scale(distances_m, gains);
         }
     }
 
     /// Writes `s′/s` (per m) and `s″/s` (per m²) at each distance. The slices have the same length.
-    pub fn relative_derivatives(&self, distances_m: &[f32], slope: &mut [f32], curvature: &mut [f32]) {
+    pub(crate) fn relative_derivatives(&self, distances_m: &[f32], slope: &mut [f32], curvature: &mut [f32]) {
         of_the_polynomial(&self.polynomial, distances_m, slope, curvature);
         if let Some(table) = &self.table {
             times_the_table(table, distances_m, slope, curvature);

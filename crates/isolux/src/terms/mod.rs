@@ -37,11 +37,11 @@ pub use cubic::Cubic;
 pub use distance_law::DistanceLaw;
 pub use lut::Lut;
 pub use noise::{Noise, NoiseModel};
-pub use polynomial::DistanceGain;
+pub(crate) use polynomial::DistanceGain;
 pub use profile::Profile;
 pub use response::Response;
 pub use spline::Spline;
-pub use table::DistanceTable;
+pub(crate) use table::DistanceTable;
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// `square` and `eq5` are cubics without limits, so that one loop serves every distance law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DistanceGain {
+pub(crate) struct DistanceGain {
     /// Coefficients of 1, d, d², d³ with d in metres.
     pub coefficients: [f32; 4],
     /// Lower end of the range, m.
@@ -17,17 +17,17 @@ pub struct DistanceGain {
 
 impl DistanceGain {
     /// The law that leaves every amplitude as it is.
-    pub const ONE: Self = Self::unbounded([1.0, 0.0, 0.0, 0.0]);
+    pub(crate) const ONE: Self = Self::unbounded([1.0, 0.0, 0.0, 0.0]);
 
     /// A cubic for all distances.
     #[must_use]
-    pub const fn unbounded(coefficients: [f64; 4]) -> Self {
+    pub(crate) const fn unbounded(coefficients: [f64; 4]) -> Self {
         Self::between(coefficients, 0.0, f64::INFINITY)
     }
 
     /// A cubic for `min_m..=max_m`; outside, the multiplier goes on as `P(edge) (d / edge)²`.
     #[must_use]
-    pub const fn between(coefficients: [f64; 4], min_m: f64, max_m: f64) -> Self {
+    pub(crate) const fn between(coefficients: [f64; 4], min_m: f64, max_m: f64) -> Self {
         let [c0, c1, c2, c3] = coefficients;
         Self {
             coefficients: [c0 as f32, c1 as f32, c2 as f32, c3 as f32],
@@ -40,7 +40,7 @@ impl DistanceGain {
     /// the range those of the inside.
     #[inline(always)]
     #[must_use]
-    pub fn derivatives(&self, distance_m: f32) -> [f32; 3] {
+    pub(crate) fn derivatives(&self, distance_m: f32) -> [f32; 3] {
         let [_, c1, c2, c3] = self.coefficients;
         let value = self.at(distance_m);
         let outside = (distance_m < self.min_m) | (distance_m > self.max_m);
@@ -53,7 +53,7 @@ impl DistanceGain {
     /// The multiplier at one distance (m); NaN for NaN.
     #[inline(always)]
     #[must_use]
-    pub fn at(&self, distance_m: f32) -> f32 {
+    pub(crate) fn at(&self, distance_m: f32) -> f32 {
         let [c0, c1, c2, c3] = self.coefficients;
         let inside = distance_m.max(self.min_m).min(self.max_m);
         let beyond = distance_m / inside;

@@ -8,7 +8,7 @@
 
 /// A tabulated function between two distances; outside, the value at the nearer end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DistanceTable {
+pub(crate) struct DistanceTable {
     /// Hermite's cubic of each cell, coefficients of 1, u, u², u³, u from 0 to 1 through the cell.
     cells: Vec<[f32; 4]>,
     /// Cell number, counted from 0 m, of the first cell.
@@ -21,7 +21,7 @@ pub struct DistanceTable {
 
 impl DistanceTable {
     /// Relative error of interpolation that is aimed at; f32 arithmetic adds 4 ulp, 5e-7.
-    pub const TOLERANCE: f64 = 1e-6;
+    pub(crate) const TOLERANCE: f64 = 1e-6;
     /// Binary logarithms of the fewest and the most cells in an octave. The most resolve an oscillation of
     /// 1000 rad/octave.
     const LOG2_CELLS: std::ops::RangeInclusive<u32> = 5..=12;
@@ -29,7 +29,7 @@ impl DistanceTable {
     /// Tabulates `function` between `min_m` and `max_m` (m, positive and increasing). It must be smooth for the
     /// 32nd part of an octave beyond either, where the outermost cells end.
     #[must_use]
-    pub fn new(function: impl Fn(f64) -> f64, min_m: f64, max_m: f64) -> Self {
+    pub(crate) fn new(function: impl Fn(f64) -> f64, min_m: f64, max_m: f64) -> Self {
         let mut log2_cells = *Self::LOG2_CELLS.start();
         loop {
             let table = Self::with_cells(&function, min_m, max_m, log2_cells);
@@ -62,15 +62,16 @@ impl DistanceTable {
     }
 
     /// Number of cells.
+    #[cfg(test)]
     #[must_use]
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.cells.len()
     }
 
     /// The value at one distance (m).
     #[inline(always)]
     #[must_use]
-    pub fn at(&self, distance_m: f32) -> f32 {
+    pub(crate) fn at(&self, distance_m: f32) -> f32 {
         let bits = distance_m.max(self.min_m).min(self.max_m).to_bits();
         let cell = (bits >> self.shift).wrapping_sub(self.first) as usize;
         let place = bits & ((1 << self.shift) - 1);
@@ -83,7 +84,7 @@ impl DistanceTable {
     /// The slope is that of the interpolation, exact at the cells' ends; the curvature is good to about a percent.
     #[inline(always)]
     #[must_use]
-    pub fn derivatives(&self, distance_m: f32) -> [f32; 3] {
+    pub(crate) fn derivatives(&self, distance_m: f32) -> [f32; 3] {
         let bits = distance_m.max(self.min_m).min(self.max_m).to_bits();
         let number = bits >> self.shift;
         let place = bits & ((1 << self.shift) - 1);
@@ -101,7 +102,7 @@ impl DistanceTable {
     }
 
     /// Multiplies each of `gains` by the value at its distance. The slices have the same length.
-    pub fn scale(&self, distances_m: &[f32], gains: &mut [f32]) {
+    pub(crate) fn scale(&self, distances_m: &[f32], gains: &mut [f32]) {
         look_up(self, distances_m, gains);
     }
 }

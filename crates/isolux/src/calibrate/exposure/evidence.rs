@@ -9,9 +9,9 @@ use crate::terms::response::{AmplitudeStack, PixelMeans, PixelSeries};
 pub struct ResponseEvidence {
     /// Mean amplitude of each pixel at each time, DN; NaN where the pixel was invalid or saturated in any frame. A
     /// long sweep keeps every second time, or fewer, to limit the memory.
-    pub stack: AmplitudeStack,
+    pub(crate) stack: AmplitudeStack,
     /// All channels of some pixels, spread over the image.
-    pub pixels: Vec<PixelSeries>,
+    pub(crate) pixels: Vec<PixelSeries>,
 }
 
 /// Largest number of amplitudes in the stack, 64 MiB. While it grows, it takes three times that for a moment.

@@ -12,7 +12,7 @@ use crate::terms::spline::{Harmonic, Law};
 
 /// The fitted factors. Each is `None` where it was not asked for or is refused.
 #[derive(Clone, Debug, PartialEq)]
-pub struct JointFit {
+pub(crate) struct JointFit {
     /// What was fitted.
     pub model: JointModel,
     /// s of every integration time, 0 at the reference.
@@ -42,7 +42,7 @@ pub struct JointFit {
 
 /// A fitted illumination profile.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ProfileFit {
+pub(crate) struct ProfileFit {
     /// The map, in gauge: ln v is 0 at the origin.
     pub map: Map,
     /// Standard error of ln v in each of the [`Places::CELLS`](crate::terms::profile::Places::CELLS); `None` where
@@ -53,13 +53,14 @@ pub struct ProfileFit {
 impl JointFit {
     /// Why a fitted factor is withheld; `None` where it is not.
     #[must_use]
-    pub fn refusal(&self, factor: Factor) -> Option<&Refusal> {
+    pub(crate) fn refusal(&self, factor: Factor) -> Option<&Refusal> {
         self.findings.iter().find(|finding| finding.factor == factor).and_then(|f| f.refusal.as_ref())
     }
 
     /// True when no fitted factor is refused.
+    #[cfg(test)]
     #[must_use]
-    pub fn is_determined(&self) -> bool {
+    pub(crate) fn is_determined(&self) -> bool {
         self.findings.iter().all(|finding| finding.refusal.is_none())
     }
 }

@@ -9,10 +9,10 @@
 //! 1.4826 MAD).
 //!
 //! Smoothness is a prior on curvature (Wahba's reading of smoothing splines): that of ln h over ln d has a standard
-//! deviation of about [`LAW_CURVATURE`], that of the profile's tensor about [`PROFILE_CURVATURE`] per squared half
+//! deviation of about 1, that of the profile's tensor about 0.5 per squared half
 //! diagonal. The weight against the observations follows from their own σ.
 //!
-//! A recording need not determine every factor. [`JointFit::findings`] says how well the observations determine
+//! A recording need not determine every factor. A [`Finding`] says how well the observations determine
 //! each factor, and why a factor is refused. The numbers of a refused factor are withheld.
 
 mod columns;
@@ -27,13 +27,11 @@ mod robust;
 #[cfg(test)]
 mod tests;
 
-pub use conclusion::{JointFit, ProfileFit};
+pub(crate) use conclusion::JointFit;
 pub use factor::Factor;
 pub use finding::Finding;
-pub use model::{
-    AngleModel, DistanceModel, JointError, JointModel, LAW_CURVATURE, Observation, PROFILE_CURVATURE,
-    TimeModel,
-};
+pub use model::JointError;
+pub(crate) use model::{AngleModel, DistanceModel, JointModel, Observation, TimeModel};
 pub use refusal::{Refusal, Vary};
 
 /// Fits the model to the observations. An observation is left out where a value that the model needs is not finite
@@ -42,7 +40,7 @@ pub use refusal::{Refusal, Vary};
 /// # Errors
 /// [`JointError`] when there is nothing to fit, or there are too few observations. A factor that the observations
 /// do not determine is no error: see [`JointFit::findings`].
-pub fn solve(observations: &[Observation], model: &JointModel) -> Result<JointFit, JointError> {
+pub(crate) fn solve(observations: &[Observation], model: &JointModel) -> Result<JointFit, JointError> {
     let problem = problem::Problem::new(observations, model)?;
     let robust = robust::solve(&problem)?;
     Ok(conclusion::conclude(&problem, robust))

@@ -4,13 +4,13 @@ use crate::terms::profile::Places;
 
 /// Standard deviation of the curvature of ln h over ln d: a source as large as the distance bends it by 1, an
 /// aliased harmonic of 1 % at eight radians per octave by as much.
-pub const LAW_CURVATURE: f64 = 1.0;
+pub(super) const LAW_CURVATURE: f64 = 1.0;
 /// Standard deviation of the curvature of ln v beside r² and r⁴, per squared half diagonal.
-pub const PROFILE_CURVATURE: f64 = 0.5;
+pub(super) const PROFILE_CURVATURE: f64 = 0.5;
 
 /// One amplitude of one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
+pub(crate) struct Observation {
     /// Which surface: equal numbers share one unknown brightness e_i. Numbers should be dense: memory grows with
     /// the largest.
     pub surface: u32,
@@ -32,7 +32,7 @@ pub struct Observation {
 /// The factors that are fitted. A factor that is left out is assumed to be constant, or to be removed from
 /// `ln_amplitude` already.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointModel {
+pub(crate) struct JointModel {
     /// Integration times.
     pub time: Option<TimeModel>,
     /// Law over distance.
@@ -48,7 +48,7 @@ pub struct JointModel {
 
 /// One factor s_j per integration time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TimeModel {
+pub(crate) struct TimeModel {
     /// Number of integration times.
     pub count: usize,
     /// The one at which s = 0.
@@ -57,7 +57,7 @@ pub struct TimeModel {
 
 /// `ln h = −2 ln(d/d_ref) + Σ c_k B_k(ln d) + w_c cos 4φ + w_s sin 4φ`, slope −2 outside the observed distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DistanceModel {
+pub(crate) struct DistanceModel {
     /// Distance at which h = 1, m.
     pub reference_m: f64,
     /// Modulation frequency, Hz, for the aliased harmonic; `None` goes without it.
@@ -66,7 +66,7 @@ pub struct DistanceModel {
 
 /// The exponent k of cosθ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AngleModel {
+pub(crate) enum AngleModel {
     /// Fitted.
     Free,
     /// Known; 1 is Lambert's.

@@ -18,7 +18,8 @@ pub struct SceneReport {
     pub sigma: f64,
     /// Unknowns beside the surfaces' reflectivities.
     pub unknowns: usize,
-    /// Rank of the reduced normal matrix; see [`crate::calibrate::joint::JointFit::rank`].
+    /// Rank of the reduced normal matrix, columns of unit length, eigenvalues above 1e-9 of the largest. Constants, r²
+    /// and r⁴ are expected to be missing: the surfaces' levels and the profile's tensor hold them.
     pub rank: usize,
     /// Root mean square of the relative error on frames that were left out.
     pub held_out_residual: Option<f64>,

@@ -11,7 +11,8 @@ pub struct TargetReport {
     pub findings: Vec<Finding>,
     /// Unknowns of that model, without the brightness of each material.
     pub unknowns: usize,
-    /// Rank of the reduced normal matrix; see [`crate::calibrate::joint::JointFit::rank`].
+    /// Rank of the reduced normal matrix, columns of unit length, eigenvalues above 1e-9 of the largest. Constants, r²
+    /// and r⁴ are expected to be missing: the surfaces' levels and the profile's tensor hold them.
     pub rank: usize,
     /// Robust standard deviation of a window, in ln.
     pub sigma: f64,

@@ -55,7 +55,7 @@ impl AmplitudeResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when hardly any pixel is compressed.
-    pub fn fit(
+    pub(crate) fn fit(
         stacks: &[&AmplitudeStack],
         least_amplitude_dn: f64,
         fitted_on: Vec<Source>,

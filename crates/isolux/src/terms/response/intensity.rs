@@ -43,7 +43,7 @@ impl IntensityResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few or nothing is compressed.
-    pub fn fit(pixels: &[PixelSeries], fitted_on: Vec<Source>) -> Result<Self, ResponseError> {
+    pub(crate) fn fit(pixels: &[PixelSeries], fitted_on: Vec<Source>) -> Result<Self, ResponseError> {
         let Fitted { well, clip_dn, largest_dn, fit } = fit(&Dc, pixels)?;
         Ok(Self { well, clip_dn, largest_dn, fitted_on, fit })
     }

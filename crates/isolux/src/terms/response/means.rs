@@ -4,7 +4,7 @@ use crate::frame::Shape;
 
 /// Mean amplitudes of every pixel of a still scene, one image per integration time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AmplitudeStack {
+pub(crate) struct AmplitudeStack {
     shape: Shape,
     integration_time_us: Vec<f64>,
     amplitude_dn: Vec<f32>,
@@ -12,7 +12,7 @@ pub struct AmplitudeStack {
 
 /// Means over the frames of one integration time of one pixel. NaN for what was not delivered or not valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelMeans {
+pub(crate) struct PixelMeans {
     /// Integration time, µs.
     pub integration_time_us: f64,
     /// Amplitude, DN.
@@ -26,30 +26,30 @@ pub struct PixelMeans {
 }
 
 /// One pixel of a still scene, in the order of time.
-pub type PixelSeries = Vec<PixelMeans>;
+pub(crate) type PixelSeries = Vec<PixelMeans>;
 
 impl AmplitudeStack {
     /// A stack without images.
     #[must_use]
-    pub fn new(shape: Shape) -> Self {
+    pub(crate) fn new(shape: Shape) -> Self {
         Self { shape, integration_time_us: Vec::new(), amplitude_dn: Vec::new() }
     }
 
     /// Height and width.
     #[must_use]
-    pub fn shape(&self) -> Shape {
+    pub(crate) fn shape(&self) -> Shape {
         self.shape
     }
 
     /// Integration times, µs, as they were pushed.
     #[must_use]
-    pub fn integration_time_us(&self) -> &[f64] {
+    pub(crate) fn integration_time_us(&self) -> &[f64] {
         &self.integration_time_us
     }
 
     /// Adds the mean amplitudes (DN, row-major; NaN where a pixel is invalid or saturated) of one time, µs. Values
     /// beyond the shape do not enter, and missing ones are NaN.
-    pub fn push(&mut self, integration_time_us: f64, amplitude_dn: impl IntoIterator<Item = f32>) {
+    pub(crate) fn push(&mut self, integration_time_us: f64, amplitude_dn: impl IntoIterator<Item = f32>) {
         let pixels = self.shape.pixels();
         self.integration_time_us.push(integration_time_us);
         self.amplitude_dn.extend(amplitude_dn.into_iter().take(pixels));

@@ -41,7 +41,7 @@ pub use error::ResponseError;
 pub use full_well::FullWell;
 pub use intensity::IntensityResponse;
 pub(crate) use intensity::PlannedIntensity;
-pub use means::{AmplitudeStack, PixelMeans, PixelSeries};
+pub(crate) use means::{AmplitudeStack, PixelMeans, PixelSeries};
 pub use parameters::Response;
 pub use phase_samples::PhaseSampleResponse;
 pub(crate) use phase_samples::PlannedBins;

@@ -38,7 +38,7 @@ impl PhaseSampleResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few or nothing is compressed.
-    pub fn fit(
+    pub(crate) fn fit(
         pixels: &[PixelSeries],
         modulation_frequency_hz: Option<f64>,
         fitted_on: Vec<Source>,

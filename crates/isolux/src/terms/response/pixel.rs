@@ -48,7 +48,7 @@ impl PixelResponse {
     ///
     /// # Errors
     /// [`ResponseError`] when the times are too few, hardly any pixel is compressed, or the image is too large.
-    pub fn fit(
+    pub(crate) fn fit(
         stack: &AmplitudeStack,
         least_amplitude_dn: f64,
         fitted_on: Vec<Source>,
