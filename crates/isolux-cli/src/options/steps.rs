@@ -14,6 +14,21 @@ use super::sigma::SigmaArgs;
 use super::values::positive;
 use crate::failure::Failure;
 
+/// The rules for highlights, laid out like the values of the other options.
+const SPECULAR_HELP: &str = "\
+How to limit highlights: a rule, or a rule with its parameter [default: histogram]
+
+Possible rules, with their parameter and its usual value:
+- histogram: Limit at the highest value that occurs in enough pixels;
+             histogram:occurrences=N [usual: max(2, 0.0005 of the valid pixels)]
+- sigma:     Limit at K standard deviations above the mean;
+             sigma:deviations=K [usual: 4]
+- percent:   Limit at a fraction of the maximum, or at a quantile of the image;
+             percent:fraction=F [usual: 0.9] or percent:quantile=Q
+- knee:      Compress what lies above the limit of histogram, keeping its order;
+             knee:occurrences=N [usual: as for histogram]
+- none:      Limit nothing";
+
 /// Which steps to apply.
 #[derive(Debug, Default, Args)]
 pub(crate) struct StepArgs {
@@ -41,18 +56,7 @@ pub(crate) struct StepArgs {
     #[arg(long, value_parser = named(AngleStep::ALL, AngleStep::name, AngleStep::description))]
     pub(crate) angle: Option<AngleStep>,
     /// How to limit highlights: a rule, or a rule with its parameter [default: histogram]
-    ///
-    /// Possible rules, with their parameter and its usual value:
-    /// - histogram: Limit at the highest value that occurs in enough pixels;
-    ///              histogram:occurrences=N [usual: max(2, 0.0005 of the valid pixels)]
-    /// - sigma:     Limit at K standard deviations above the mean;
-    ///              sigma:deviations=K [usual: 4]
-    /// - percent:   Limit at a fraction of the maximum, or at a quantile of the image;
-    ///              percent:fraction=F [usual: 0.9] or percent:quantile=Q
-    /// - knee:      Compress what lies above the limit of histogram, keeping its order;
-    ///              knee:occurrences=N [usual: as for histogram]
-    /// - none:      Limit nothing
-    #[arg(long, value_name = "RULE", verbatim_doc_comment)]
+    #[arg(long, value_name = "RULE", long_help = SPECULAR_HELP)]
     pub(crate) specular: Option<SpecularStep>,
     /// Flag amplitudes below this as LOW_SIGNAL, DN [default: from the calibration]
     #[arg(long, value_name = "DN", value_parser = positive)]
