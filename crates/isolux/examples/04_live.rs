@@ -22,8 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     // The camera: a thread that delivers a desk at 2 to 16.2 ms.
     let recorded = simulated::record("office-desk")?;
     let (camera, frames) = mpsc::sync_channel(2);
-    let camera =
-        thread::spawn(move || recorded.into_iter().skip(9).take(27).try_for_each(|frame| camera.send(frame)));
+    let camera = thread::spawn(move || {
+        recorded.into_iter().skip(9).take(27).try_for_each(|frame| camera.send(frame).ok())
+    });
 
     // The loop: nothing is allocated for a frame after the first one.
     println!("{:>8} {:>12} {:>15}", "µs", "raw DN", "standardized DN");
