@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let textbook = Standardizer::plan(&choice, None, traits)?;
     show("without a calibration", &textbook, &frame)?;
 
-    // The calibration knows how this camera saturates.
+    // The calibration knows how this camera saturates, and its own law over distance.
     let calibration = simulated::calibration()?;
     let calibrated = Standardizer::plan(&choice, Some(&calibration), traits)?;
     show("with a calibration", &calibrated, &frame)

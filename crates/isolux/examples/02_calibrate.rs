@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  relative residual {:.4}", spline.fit.residual);
     }
     for tier in calibration.terms.response.iter().flat_map(|response| response.tiers()) {
-        println!("response: fitted for recordings with what `{tier}` needs");
+        println!("response: tier {tier}");
     }
     if let Some(floor) = &calibration.noise_floor {
         println!("noise without light: {:.2} DN", floor.amplitude_sd_dn);

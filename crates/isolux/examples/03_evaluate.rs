@@ -6,7 +6,8 @@ mod simulated;
 use std::error::Error;
 
 use isolux::evaluate::{Comparison, EvaluationFrame, EvaluationSettings, Evaluator, nearest_reference};
-use isolux::{Channels, Choice, Standardizer};
+use isolux::standardize::DenoiseStep;
+use isolux::{Channels, Choice, DenoiseRule, Standardizer};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // A still desk at 18 integration times, and the plan that standardizes it.
@@ -14,7 +15,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let calibration = simulated::calibration()?;
     let channels =
         Channels::AMPLITUDE | Channels::INTENSITY | Channels::DISTANCE | Channels::INTEGRATION_TIME;
-    let standardizer = Standardizer::plan(&Choice::default(), Some(&calibration), channels)?;
+    // Dim pixels have noisy distances, which would dominate the figures: smooth the distance first.
+    let denoise = Some(DenoiseStep::Smooth(DenoiseRule::Wiener));
+    let choice = Choice { denoise, ..Choice::default() };
+    let standardizer = Standardizer::plan(&choice, Some(&calibration), channels)?;
     let mut stream = standardizer.stream();
 
     // One evaluator sees the raw amplitude, the other the standardized amplitude of the same frames.

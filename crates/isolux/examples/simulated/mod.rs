@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use isolux::calibrate::{CalibrateSettings, ExposureSweep, fit};
+use isolux::calibrate::{CalibrateSettings, DistanceSweep, ExposureSweep, fit};
 use isolux::{Calibration, Frame};
 use isolux_camera::{CameraModel, Scene, Simulation};
 
@@ -16,13 +16,17 @@ pub fn record(scene: &str) -> Result<Vec<Frame>, Box<dyn Error>> {
     Ok(frames.into_iter().map(|simulated| simulated.frame).collect())
 }
 
-/// A calibration of that camera over the integration time. Example 02 shows how a complete one is made.
+/// A calibration of that camera. Example 02 shows step by step how it is made.
 pub fn calibration() -> Result<Calibration, Box<dyn Error>> {
     let settings = CalibrateSettings::default();
-    let mut sweep = ExposureSweep::new("wall", &settings);
+    let mut wall = ExposureSweep::new("wall", &settings);
     for frame in record("wall-sweep-smoke")? {
-        sweep.push(&frame)?;
+        wall.push(&frame)?;
     }
-    let (calibration, _) = fit(&settings, None, vec![sweep.finish()], vec![])?;
+    let mut board = DistanceSweep::new("board", &settings);
+    for frame in record("board-distances-smoke")? {
+        board.push(&frame)?;
+    }
+    let (calibration, _) = fit(&settings, None, vec![wall.finish()], vec![board.finish()])?;
     Ok(calibration)
 }
