@@ -77,7 +77,7 @@ impl fmt::Display for Note {
                  saturation and its own distance law"
             ),
             Self::NoTimeTerm => f.write_str("the calibration has no `lut`: this step is left out"),
-            Self::NoDistanceTerm => f.write_str("the calibration has no `cubic`: this step is left out"),
+            Self::NoDistanceTerm => f.write_str("the calibration has neither `spline` nor `cubic`: this step is left out"),
             Self::ChannelMissing { effect, channel } => {
                 write!(f, "the recording has no {channel}: the {effect} step is left out")
             }
