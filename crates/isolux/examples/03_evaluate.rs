@@ -10,12 +10,15 @@ use isolux::standardize::DenoiseStep;
 use isolux::{Channels, Choice, DenoiseRule, Standardizer};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // A still desk at 18 integration times, and the plan that standardizes it.
-    let frames = simulated::record("office-desk")?;
+    // A still desk, at integration times that neither leave it in the dark nor saturate it: what is not measured well
+    // would dominate the figures.
+    let mut frames = simulated::record("office-desk")?;
+    frames
+        .retain(|frame| frame.integration_time_us.at(0).is_some_and(|us| (4000.0..=16_200.0).contains(&us)));
     let calibration = simulated::calibration()?;
     let channels =
         Channels::AMPLITUDE | Channels::INTENSITY | Channels::DISTANCE | Channels::INTEGRATION_TIME;
-    // Dim pixels have noisy distances, which would dominate the figures: smooth the distance first.
+    // The noise of the distance would go into the values: smooth it first.
     let denoise = Some(DenoiseStep::Smooth(DenoiseRule::Wiener));
     let choice = Choice { denoise, ..Choice::default() };
     let standardizer = Standardizer::plan(&choice, Some(&calibration), channels)?;
