@@ -14,8 +14,7 @@ use super::steps::sigma::Predictor;
 use super::steps::time::TimeGain;
 use super::steps::{angle, profile, specular, time};
 use super::workspace::Workspace;
-use crate::frame::Frame;
-use crate::frame::PixelFlags;
+use crate::frame::{Frame, PixelFlags};
 use crate::terms::DistanceLaw;
 
 /// Multipliers of a step that is left out; small enough to stay in the cache.

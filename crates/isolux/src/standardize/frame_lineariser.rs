@@ -2,9 +2,7 @@
 
 use super::error::StandardizeError;
 use super::steps::response::{Corrected, Repaired, SaturationCorrection};
-use crate::frame::PixelFlags;
-use crate::frame::{Channels, Frame};
-use crate::frame::{Plane, Shape};
+use crate::frame::{Channels, Frame, PixelFlags, Plane, Shape};
 use crate::terms::response::Response;
 
 /// Corrects the saturation of each pixel by its measured fill, as the response step does. What is fitted to such

@@ -15,8 +15,7 @@
 use super::standardized::{FrameSummary, Standardized};
 use super::standardizer::Standardizer;
 use super::steps::specular;
-use crate::frame::PixelFlags;
-use crate::frame::{Shape, ShapeError};
+use crate::frame::{PixelFlags, Shape, ShapeError};
 use crate::memory::bytes;
 use crate::numerics::quantile::PositiveQuantiles;
 use crate::specular::SpecularRule;

@@ -1,8 +1,6 @@
 //! What a plan must know about the recording.
 
-use crate::frame::Channels;
-use crate::frame::Intrinsics;
-use crate::frame::Shape;
+use crate::frame::{Channels, Intrinsics, Shape};
 
 /// Facts about a recording that decide which steps are possible.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,7 @@
 //! A standardized frame, and counts of what happened to its pixels.
 
 use super::kernel::{BLOCK, TALLIES, tally};
-use crate::frame::PixelFlags;
-use crate::frame::{Plane, Shape};
+use crate::frame::{PixelFlags, Plane, Shape};
 
 /// A standardized frame: planes of the frame's height × width. Reuse one for a whole recording.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,8 +6,7 @@ use super::standardized::Standardized;
 use super::standardizer::Standardizer;
 use super::workspace::Workspace;
 use crate::denoise::TemporalMean;
-use crate::frame::Frame;
-use crate::frame::Shape;
+use crate::frame::{Frame, Shape};
 
 /// Standardizes a sequence of frames. It owns the chain, what must be remembered of earlier frames, working memory
 /// and the last result.

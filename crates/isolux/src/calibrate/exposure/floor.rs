@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::calibration::NoiseFloor;
-use crate::frame::Frame;
-use crate::frame::Window;
+use crate::frame::{Frame, Window};
 use crate::numerics::differences;
 
 /// Compares the central window of each frame with that of the frame before.

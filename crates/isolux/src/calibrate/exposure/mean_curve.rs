@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::frame::Frame;
-use crate::frame::PixelFlags;
+use crate::frame::{Frame, PixelFlags};
 use crate::terms::lut::ExposureSample;
 use crate::terms::root_mean_square;
 

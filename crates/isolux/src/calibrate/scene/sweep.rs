@@ -9,9 +9,7 @@ use super::view::{LEAST_COSINE, View};
 use crate::calibrate::exposure::{ExposureCurve, ExposureSweep};
 use crate::calibrate::sweep_frames::{SweepFrames, single_time};
 use crate::calibrate::{CalibrateSettings, MeasureError};
-use crate::frame::Frame;
-use crate::frame::Intrinsics;
-use crate::frame::Shape;
+use crate::frame::{Frame, Intrinsics, Shape};
 use crate::terms::Source;
 
 /// An ordinary recording, measured frame by frame.

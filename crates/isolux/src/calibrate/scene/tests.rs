@@ -7,9 +7,7 @@ use super::*;
 use crate::calibrate::joint::Factor;
 use crate::calibrate::{CalibrateSettings, ExposureFit, FitReport, FitWarning, Measurements};
 use crate::calibration::{Calibration, Reference};
-use crate::frame::Intrinsics;
-use crate::frame::Shape;
-use crate::frame::{Frame, IntegrationTime};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, Shape};
 use crate::numerics::hash::splitmix64;
 use crate::terms::lut::LutAnswer;
 

@@ -1,9 +1,7 @@
 //! Measures one window of a label in one frame.
 
 use super::patches::PATCH_PX;
-use crate::frame::PixelFlags;
-use crate::frame::{Frame, IntegrationTime};
-use crate::frame::{Plane, Shape};
+use crate::frame::{Frame, IntegrationTime, PixelFlags, Plane, Shape};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
 /// A window's median amplitude must stand this many times above its pixels' scatter: fainter ones are biased.

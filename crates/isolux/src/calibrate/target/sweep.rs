@@ -4,9 +4,7 @@ use super::measure::{WindowMedians, measure, middle_cosine};
 use super::patches::{PATCH_PX, Patches};
 use crate::calibrate::sweep_frames::SweepFrames;
 use crate::calibrate::{CalibrateSettings, MeasureError};
-use crate::frame::Intrinsics;
-use crate::frame::{Frame, IntegrationTime};
-use crate::frame::{Plane, Shape, Window};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, Plane, Shape, Window};
 use crate::surface::Incidence;
 use crate::terms::Source;
 

@@ -5,9 +5,7 @@ use crate::calibrate::factor_terms::FactorWarning;
 use crate::calibrate::{
     CalibrateError, CalibrateSettings, ExposureFit, FitWarning, MeasureError, Measurements,
 };
-use crate::frame::Frame;
-use crate::frame::Intrinsics;
-use crate::frame::{Plane, Shape};
+use crate::frame::{Frame, Intrinsics, Plane, Shape};
 use crate::terms::profile::Places;
 
 const SHAPE: Shape = Shape::new(60, 80);

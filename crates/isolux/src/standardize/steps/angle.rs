@@ -1,8 +1,6 @@
 //! The step that removes the effect of the angle of incidence: a factor on the multipliers of a block.
 
-use crate::frame::Channels;
-use crate::frame::Intrinsics;
-use crate::frame::PixelFlags;
+use crate::frame::{Channels, Intrinsics, PixelFlags};
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
 use crate::step_names::AngleStep;

@@ -2,8 +2,7 @@
 
 use crate::choice::DenoiseStep;
 use crate::denoise::{DenoiseRule, Denoiser};
-use crate::frame::Frame;
-use crate::frame::Plane;
+use crate::frame::{Frame, Plane};
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
 use crate::standardize::prepared::Prepared;

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::advice::RecordingKind;
-use crate::frame::PixelFlags;
-use crate::frame::Shape;
+use crate::frame::{PixelFlags, Shape};
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};

@@ -1,9 +1,7 @@
 //! The response: amplitudes are corrected for saturation, each by the fill of its pixel, before anything scales them.
 
 use crate::advice::RecordingKind;
-use crate::frame::PixelFlags;
-use crate::frame::{Channels, Frame, IntegrationTime};
-use crate::frame::{Plane, Shape};
+use crate::frame::{Channels, Frame, IntegrationTime, PixelFlags, Plane, Shape};
 use crate::memory::bytes;
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;

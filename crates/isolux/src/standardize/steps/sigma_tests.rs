@@ -3,8 +3,7 @@
 use crate::calibration::{Calibration, Reference};
 use crate::denoise::DenoiseRule;
 use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
-use crate::frame::{Channels, Frame, IntegrationTime};
-use crate::frame::{Plane, Shape};
+use crate::frame::{Channels, Frame, IntegrationTime, Plane, Shape};
 use crate::numerics::hash::splitmix64;
 use crate::standardize::{
     Choice, DenoiseStep, DistanceStep, PlanError, RecordingTraits, SigmaStep, SpecularStep, Standardizer,

@@ -1,6 +1,5 @@
 use super::*;
-use crate::frame::Intrinsics;
-use crate::frame::Shape;
+use crate::frame::{Intrinsics, Shape};
 use crate::terms::FitQuality;
 
 const SHAPE: Shape = Shape::new(48, 64);
