@@ -143,8 +143,13 @@ fn frames_of_unknown_number_give_the_same() {
         Some(&(Work::Standardizing, simulation.len(), Some(simulation.len())))
     );
     let folder = tempfile::tempdir().unwrap();
-    let mut native = NativeSink::new(&folder.path().join("out"), false);
-    let refused = standardize(&mut unknown, &chain, &options, &mut native, &Unobserved).unwrap_err();
+    // A recording can be written all the same: its files learn the number at the end.
+    let path = folder.path().join("out");
+    let mut native = NativeSink::new(&path, false);
+    let written = standardize(&mut unknown, &chain, &options, &mut native, &Unobserved).unwrap();
+    assert_eq!(written.frames, simulation.len());
+    assert_eq!(isolux_io::open(&path).unwrap().metadata().frame_count, Some(simulation.len()));
+    let refused = Brackets::plan(&mut unknown, Some(3), &Unobserved).unwrap_err();
     assert!(matches!(refused, PipelineError::LengthUnknown { .. }), "{refused}");
     assert_eq!(overview(&mut known, &Unobserved).unwrap().integration_times_us.len(), {
         overview(&mut unknown, &Unobserved).unwrap().integration_times_us.len()
