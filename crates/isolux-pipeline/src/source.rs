@@ -53,6 +53,7 @@ impl SourceFacts {
             shape: Some(self.shape),
             intrinsics: self.intrinsics(),
             modulation_frequency_hz: self.info.modulation_frequency_hz,
+            ambient_light: None,
         }
     }
 }

@@ -32,7 +32,7 @@ struct Measured {
 pub(super) fn section(_lab: &Lab) -> Result<Section, ExperimentError> {
     let measure = |seed: &u64| {
         let camera = HeldOut::new(*seed)?;
-        let decays = decay::measure(&camera, &chains::ALL)?;
+        let decays = decay::measure(&camera, decay::Ambient::Same, &chains::ALL)?;
         let still = still::measure(&camera, &chains::ALL)?;
         Ok(Measured { name: camera.model.name, decays, still })
     };

@@ -1,7 +1,7 @@
 //! The chains that are compared: the paper's, the textbook's, and ours.
 
-use isolux::standardize::{DenoiseStep, DistanceStep, SpecularStep, TimeStep};
-use isolux::{Channels, Choice, DenoiseRule, Standardizer};
+use isolux::standardize::{AmbientLight, DenoiseStep, DistanceStep, SpecularStep, TimeStep};
+use isolux::{Channels, Choice, DenoiseRule, RecordingTraits, Standardizer};
 
 use super::held_out::HeldOut;
 use crate::error::ExperimentError;
@@ -38,16 +38,16 @@ enum Steps {
     TextbookBut(DistanceStep),
     /// None.
     Nothing,
-    /// This one for the time, the wiener rule and the spline.
-    Ours(TimeStep),
+    /// The response, the wiener rule and the spline.
+    Ours,
 }
 
 const fn chain(name: &'static str, steps: Steps) -> Chain {
     Chain { name, evidence: Evidence::Amplitude, steps }
 }
 
-const fn ours(name: &'static str, time: TimeStep, evidence: Evidence) -> Chain {
-    Chain { name, evidence, steps: Steps::Ours(time) }
+const fn ours(name: &'static str, evidence: Evidence) -> Chain {
+    Chain { name, evidence, steps: Steps::Ours }
 }
 
 /// Nothing but the camera's image.
@@ -60,13 +60,11 @@ pub const EQ5: Chain = chain("eq. 5, linear time", Steps::TextbookBut(DistanceSt
 pub const PAPER: Chain = chain("the paper (lut, cubic)", Steps::Paper);
 /// Ours for cameras that deliver no more than amplitude and distance.
 pub const FROM_AMPLITUDE: Chain =
-    ours("isolux, amplitude alone (lut, wiener, spline)", TimeStep::Lut, Evidence::Amplitude);
+    ours("isolux, amplitude alone (response, wiener, spline)", Evidence::Amplitude);
 /// Ours with the DC image.
-pub const FROM_INTENSITY: Chain =
-    ours("isolux, intensity (response, wiener, spline)", TimeStep::Response, Evidence::Intensity);
+pub const FROM_INTENSITY: Chain = ours("isolux, intensity (response, wiener, spline)", Evidence::Intensity);
 /// Ours with the raw bins.
-pub const FROM_BINS: Chain =
-    ours("isolux, raw bins (response, wiener, spline)", TimeStep::Response, Evidence::PhaseSamples);
+pub const FROM_BINS: Chain = ours("isolux, raw bins (response, wiener, spline)", Evidence::PhaseSamples);
 /// Everybody.
 pub const ALL: [Chain; 7] = [RAW, EQ5, TEXTBOOK, PAPER, FROM_AMPLITUDE, FROM_INTENSITY, FROM_BINS];
 
@@ -77,18 +75,24 @@ impl Chain {
         [FROM_AMPLITUDE, FROM_INTENSITY, FROM_BINS].contains(self)
     }
 
-    /// Plans the chain for frames of a held-out camera, with the calibration that such recordings allow.
+    /// Plans the chain for frames of a held-out camera in this ambient light, where it is known, with the calibration
+    /// that such recordings allow.
     ///
     /// # Errors
     /// [`ExperimentError::Plan`] when the calibration lacks a term.
-    pub fn plan(&self, held_out: &HeldOut) -> Result<Standardizer, ExperimentError> {
+    pub fn plan(
+        &self,
+        held_out: &HeldOut,
+        ambient_light: Option<&AmbientLight>,
+    ) -> Result<Standardizer, ExperimentError> {
         let (calibration, besides) = match self.evidence {
             Evidence::Amplitude => (&held_out.from_amplitude, Channels::empty()),
             Evidence::Intensity => (&held_out.calibration, Channels::INTENSITY),
             Evidence::PhaseSamples => (&held_out.calibration, Channels::PHASE_SAMPLES),
         };
         let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | besides;
-        Ok(Standardizer::plan(&self.steps.choice(channels), Some(calibration), channels)?)
+        let traits = RecordingTraits { ambient_light: ambient_light.cloned(), ..channels.into() };
+        Ok(Standardizer::plan(&self.steps.choice(channels), Some(calibration), traits)?)
     }
 }
 
@@ -103,8 +107,8 @@ impl Steps {
             Self::Nothing => {
                 Choice { time: Some(TimeStep::None), distance: Some(DistanceStep::None), ..textbook }
             }
-            Self::Ours(time) => Choice {
-                time: Some(time),
+            Self::Ours => Choice {
+                time: Some(TimeStep::Response),
                 denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
                 distance: Some(DistanceStep::Spline),
                 ..Choice::default()

@@ -86,7 +86,7 @@ pub fn spreads(frames: &[Frame], protocol: &Protocol) -> Result<Vec<Spread>, Exp
         let mut chains = Vec::new();
         for method in &methods {
             let terms = Some(&calibration).filter(|_| method.calibrated);
-            chains.push(Standardizer::plan(&method.choice, terms, traits)?.stream());
+            chains.push(Standardizer::plan(&method.choice, terms, traits.clone())?.stream());
         }
         for frame in frames.iter().skip(fold).step_by(FOLDS) {
             let measured = measured_windows(frame, protocol);

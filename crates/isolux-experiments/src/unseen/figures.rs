@@ -47,8 +47,10 @@ pub fn simulated(progress: &mut dyn FnMut(&str)) -> Result<Vec<Figure>, Experime
 
 /// The worst of the cameras for each chain.
 fn decays(cameras: &[HeldOut]) -> Result<Vec<Figure>, ExperimentError> {
-    let measured =
-        cameras.iter().map(|camera| decay::measure(camera, &chains::ALL)).collect::<Result<Vec<_>, _>>()?;
+    let measured = cameras
+        .iter()
+        .map(|camera| decay::measure(camera, decay::Ambient::Same, &chains::ALL))
+        .collect::<Result<Vec<_>, _>>()?;
     let figure = |(index, chain): (usize, &Chain)| {
         let cv = largest(measured.iter().map(|decays| decays[index].cv));
         let what = format!("reference decay over all integration times, CV, worst camera: {}", chain.name);

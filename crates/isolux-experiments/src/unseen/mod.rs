@@ -9,6 +9,7 @@ pub mod denoise;
 pub mod figure;
 pub mod figures;
 pub mod held_out;
+mod light;
 mod noise_free;
 pub mod real_cameras;
 pub mod response;

@@ -7,6 +7,7 @@ use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::chains::Chain;
 use super::held_out::{HeldOut, MEASURED};
+use super::light;
 use crate::error::ExperimentError;
 use crate::measure::{for_each, time_us};
 
@@ -47,7 +48,8 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Exper
         run.integration_times_us = TIMES_US.to_vec();
     }
     let simulation = Simulation::new(held_out.model.clone(), scene, MEASURED)?;
-    let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out)?.stream());
+    let light = light::estimate(&held_out.from_amplitude, &simulation)?;
+    let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out, light.as_ref())?.stream());
     let mut streams: Vec<Stream> = chains.iter().map(plan).collect::<Result<_, _>>()?;
     let shape = simulation.shape();
     let evaluator = || Evaluator::new(shape, EvaluationSettings::default());

@@ -81,7 +81,7 @@ pub fn patches(seed: u64, calibration: &Calibration, step: usize) -> Result<Patc
         denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
         ..textbook
     };
-    let mut chain = Standardizer::plan(&fitted, Some(calibration), traits)?.stream();
+    let mut chain = Standardizer::plan(&fitted, Some(calibration), traits.clone())?.stream();
     let mut plain = Standardizer::plan(&textbook, None, traits)?.stream();
     let mut sums = Sums::default();
     let mut simulated = SimulatedFrame::new(simulation.shape());

@@ -46,7 +46,7 @@ impl Rivals {
     ) -> Self {
         let rival = |(name, choice): (&'static str, Choice)| {
             // A chain that cannot be planned for this recording is left out.
-            let standardizer = Standardizer::plan(&choice, calibration, traits).ok()?;
+            let standardizer = Standardizer::plan(&choice, calibration, traits.clone()).ok()?;
             let same = does_the_same(&standardizer, chosen) || standardizer.steps().is_empty();
             let evaluator = Evaluator::new(shape, EvaluationSettings::default());
             let flags = Plane::filled(shape, PixelFlags::empty());

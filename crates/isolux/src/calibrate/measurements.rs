@@ -77,7 +77,7 @@ mod tests {
 
     fn decays(name: &str) -> ReferenceDecays {
         let source = Source { recording: name.to_owned(), frames_used: 1, frames_left_out: 0 };
-        ReferenceDecays { source, decays: Vec::new(), warnings: Vec::new() }
+        ReferenceDecays { source, decays: Vec::new(), samples: Vec::new(), warnings: Vec::new() }
     }
 
     #[test]

@@ -13,11 +13,13 @@
 //! Targets and scenes are fitted with one model of time, distance, place and angle, [`joint`]. What a recording
 //! does not determine becomes no term, but a [`FitWarning`].
 
+mod ambient_light;
 mod distance;
 mod error;
 mod exposure;
 mod factor_terms;
 mod fit;
+mod grouped_noise;
 pub mod joint;
 mod measure_error;
 mod measurements;
@@ -29,6 +31,7 @@ mod sweep_frames;
 mod target;
 mod warning;
 
+pub use ambient_light::{AmbientSurvey, AmbientUnknown};
 pub use distance::{DistanceSweep, DistanceWarning, ReferenceDecays};
 pub use error::CalibrateError;
 pub use exposure::{

@@ -24,6 +24,8 @@ bitflags! {
         /// The pixel lies outside the supported part of the illumination profile, or its surface is steeper than
         /// the angle term was fitted on; the nearest known factor is used.
         const ILLUMINATION_OUT_OF_RANGE = 1 << 6;
+        /// A brighter surface that saturates would deliver the same amplitude at this distance and time; with INVALID.
+        const AMBIGUOUS = 1 << 7;
     }
 }
 
@@ -55,6 +57,7 @@ mod tests {
             ("DISTANCE_OUT_OF_RANGE", 4),
             ("SPECULAR", 5),
             ("ILLUMINATION_OUT_OF_RANGE", 6),
+            ("AMBIGUOUS", 7),
         ];
         assert_eq!(legend, expected);
     }

@@ -6,6 +6,7 @@ pub(crate) mod differences;
 pub(crate) mod hash;
 pub(crate) mod minimum;
 pub(crate) mod nnls;
+pub(crate) mod nonlinear;
 pub(crate) mod plane_fit;
 pub(crate) mod quantile;
 pub(crate) mod regression;

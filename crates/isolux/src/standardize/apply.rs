@@ -9,11 +9,12 @@ use super::plan::Plan;
 use super::prepared::Prepared;
 use super::standardized::{FrameSummary, Standardized};
 use super::steps::denoise::scaling_distance;
-use super::steps::response::Repaired;
+use super::steps::response::{Fill, Repaired, SaturationCorrection};
 use super::steps::sigma::Predictor;
 use super::steps::time::TimeGain;
 use super::steps::{angle, profile, specular, time};
 use super::workspace::Workspace;
+use crate::denoise::{DenoiseRule, Denoiser};
 use crate::frame::{Frame, PixelFlags};
 use crate::terms::DistanceLaw;
 
@@ -49,7 +50,10 @@ pub(super) fn apply(
     let flags = out.flags.values_mut();
     let Workspace { corrected, gains, signal_to_noise, denoiser, incidence, quantiles } = workspace;
     let repaired = match &plan.saturation {
-        Some(correction) => Some(corrected.fill(correction, frame, flags)?),
+        Some(correction) => {
+            let fill = fill_of(correction, plan, frame, prepared, denoiser)?;
+            Some(corrected.fill(correction, frame, fill, flags)?)
+        }
         None => None,
     };
     let amplitude = repaired.map_or(frame.amplitude.values(), |_| corrected.amplitude());
@@ -90,6 +94,23 @@ pub(super) fn apply(
         ..FrameSummary::of(out.flags.values())
     };
     Ok(())
+}
+
+/// What a correction by distance and ambient light needs of the frame; nothing for others.
+fn fill_of<'a>(
+    correction: &SaturationCorrection,
+    plan: &Plan,
+    frame: &'a Frame,
+    prepared: &'a Prepared,
+    denoiser: &'a mut Denoiser,
+) -> Result<Fill<'a>, StandardizeError> {
+    if !matches!(correction, SaturationCorrection::Ambient { .. }) {
+        return Ok(Fill::default());
+    }
+    // The fill follows from the square of the distance: its noise would bias the correction.
+    let rule = plan.denoise.or(Some(DenoiseRule::Wiener));
+    let denoised = scaling_distance(rule, frame, frame.distance_m.as_ref(), prepared, false, denoiser)?;
+    Ok(Fill { distance_m: denoised.distance_m, ambient_dn_per_us: prepared.ambient_dn_per_us })
 }
 
 /// Runs the point-wise loop block by block.

@@ -1,7 +1,7 @@
 //! Corrects whole frames for saturation before something is fitted to them.
 
 use super::error::StandardizeError;
-use super::steps::response::{Corrected, Repaired, SaturationCorrection};
+use super::steps::response::{Corrected, Fill, Repaired, SaturationCorrection};
 use crate::frame::{Channels, Frame, PixelFlags, Plane, Shape};
 use crate::terms::response::Response;
 
@@ -44,7 +44,7 @@ impl FrameLineariser {
         frame.check_shapes()?;
         let none = Plane::filled(Shape::new(0, 0), PixelFlags::empty());
         let mut flags = std::mem::replace(&mut frame.flags, none);
-        let repaired = self.corrected.fill(&self.correction, frame, flags.values_mut());
+        let repaired = self.corrected.fill(&self.correction, frame, Fill::default(), flags.values_mut());
         frame.flags = flags;
         let repaired = repaired?;
         frame.amplitude.values_mut().copy_from_slice(self.corrected.amplitude());

@@ -19,6 +19,7 @@
 //!
 //! Frames of a bracket (a still scene at several integration times) are merged by [`BracketMerge`].
 
+mod ambient_light;
 mod apply;
 mod error;
 mod frame_lineariser;
@@ -37,6 +38,7 @@ mod workspace;
 
 pub use crate::choice::{Choice, DenoiseStep, SpecularStep};
 pub use crate::step_names::{AngleStep, DistanceStep, Method, ProfileStep, SigmaStep, TimeStep};
+pub use ambient_light::AmbientLight;
 pub use error::StandardizeError;
 pub use frame_lineariser::FrameLineariser;
 pub use merge::{BracketMerge, MergeError};

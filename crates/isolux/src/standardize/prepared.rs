@@ -9,6 +9,8 @@ use crate::frame::{Plane, Shape, ShapeError};
 pub struct Prepared {
     /// Present when the plan averages distances over frames.
     pub(super) mean: Option<MeanDistance>,
+    /// Ambient light of the frame, DN/µs; present when the plan corrects by one that drifts.
+    pub(super) ambient_dn_per_us: Option<f64>,
 }
 
 /// The mean distance over the last frames.

@@ -1,9 +1,10 @@
 //! What a plan must know about the recording.
 
+use super::AmbientLight;
 use crate::frame::{Channels, Intrinsics, Shape};
 
 /// Facts about a recording that decide which steps are possible.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordingTraits {
     /// The channels that the recording has.
     pub channels: Channels,
@@ -14,11 +15,14 @@ pub struct RecordingTraits {
     /// Its modulation frequency, Hz, from which the prediction of sigma computes the noise of the distances.
     /// `None`: the noise is estimated from each frame.
     pub modulation_frequency_hz: Option<f64>,
+    /// Its ambient light, without which the response cannot tell the fill of a pixel from amplitude and distance.
+    /// [`AmbientSurvey`](crate::calibrate::AmbientSurvey) estimates it.
+    pub ambient_light: Option<AmbientLight>,
 }
 
 /// The traits of a recording of which only the channels are known.
 impl From<Channels> for RecordingTraits {
     fn from(channels: Channels) -> Self {
-        Self { channels, shape: None, intrinsics: None, modulation_frequency_hz: None }
+        Self { channels, shape: None, intrinsics: None, modulation_frequency_hz: None, ambient_light: None }
     }
 }

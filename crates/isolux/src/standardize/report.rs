@@ -127,6 +127,9 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
+    /// The response by amplitude and distance was asked for, but the ambient light is unknown.
+    #[error("tier `ambient` was asked for, but the ambient light of the recording is not known")]
+    AmbientLightUnknown,
     /// The standard deviation was asked for, but the noise of the amplitude is unknown.
     #[error("`sigma` was asked for, but the noise of the amplitude is not known")]
     NoiseUnknown,
@@ -158,7 +161,10 @@ impl PlanError {
             }
             Self::NoiseUnknown => Some(Advice::GiveNoise),
             Self::IntrinsicsMissing => Some(Advice::GiveIntrinsics),
-            Self::ChannelMissing { .. } | Self::ProfileFormat { .. } | Self::Calibration(_) => None,
+            Self::AmbientLightUnknown
+            | Self::ChannelMissing { .. }
+            | Self::ProfileFormat { .. }
+            | Self::Calibration(_) => None,
         }
     }
 }

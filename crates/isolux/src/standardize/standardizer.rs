@@ -9,6 +9,7 @@ use super::prepared::Prepared;
 use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
 use super::standardized::Standardized;
+use super::steps::response::SaturationCorrection;
 use super::workspace::Workspace;
 use crate::calibration::Calibration;
 use crate::choice::Choice;
@@ -64,6 +65,14 @@ impl Standardizer {
     #[must_use]
     pub fn predicts_sigma(&self) -> bool {
         self.plan.sigma.is_some()
+    }
+
+    /// Ambient light of a frame, counted from 0, DN/µs, where the chain corrects by one that drifts.
+    pub(super) fn ambient_dn_per_us(&self, frame: usize) -> Option<f64> {
+        match &self.plan.saturation {
+            Some(SaturationCorrection::Ambient { light, .. }) => Some(light.at(frame)),
+            _ => None,
+        }
     }
 
     /// Number of earlier frames that the result of a frame depends on: 0 unless the chain averages over frames.

@@ -29,6 +29,8 @@ use crate::frame::{Frame, Shape};
 pub struct Stream {
     standardizer: Standardizer,
     history: Option<TemporalMean>,
+    /// Number of the next frame.
+    next: usize,
     prepared: Prepared,
     workspace: Workspace,
     out: Standardized,
@@ -41,6 +43,7 @@ impl Standardizer {
         Stream {
             standardizer: self.clone(),
             history: (self.frames_before() > 0).then(TemporalMean::new),
+            next: 0,
             prepared: Prepared::default(),
             workspace: Workspace::default(),
             out: Standardized::new(Shape::new(0, 0)),
@@ -75,6 +78,8 @@ impl Stream {
     /// [`StandardizeError`] when the chain averages over frames and this frame has no distance, or its planes
     /// differ in shape.
     pub fn prepare(&mut self, frame: &Frame, out: &mut Prepared) -> Result<(), StandardizeError> {
+        out.ambient_dn_per_us = self.standardizer.ambient_dn_per_us(self.next);
+        self.next += 1;
         let Some(history) = &mut self.history else {
             out.mean = None;
             return Ok(());

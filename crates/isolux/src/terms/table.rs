@@ -42,6 +42,12 @@ impl DistanceTable {
         }
     }
 
+    /// The same with 128 cells in an octave, whatever the error: for functions with kinks, whose values need not be exact.
+    #[must_use]
+    pub(crate) fn coarse(function: impl Fn(f64) -> f64, min_m: f64, max_m: f64) -> Self {
+        Self::with_cells(&function, min_m, max_m, 7)
+    }
+
     fn with_cells(function: &impl Fn(f64) -> f64, min_m: f64, max_m: f64, log2_cells: u32) -> Self {
         let (min_m, max_m) = (min_m as f32, max_m as f32);
         let shift = f32::MANTISSA_DIGITS - 1 - log2_cells;

@@ -21,6 +21,8 @@ pub(super) struct Measurement {
     pub(super) amplitude_dn: f64,
     /// Mean amplitude over its noise.
     pub(super) signal_to_noise: f64,
+    /// Pixels that were averaged.
+    pub(super) pixels: f64,
     /// Distance from one side of the window to the other.
     pub(super) spread_m: f64,
 }
@@ -64,6 +66,7 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
         distance_error_m: distance_sd_m / (count as f64).sqrt(),
         amplitude_dn,
         signal_to_noise: amplitude_dn / deviation(&amplitudes),
+        pixels: count as f64,
         spread_m: slope_spread(&distances, window),
     })
 }

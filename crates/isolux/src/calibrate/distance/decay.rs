@@ -3,6 +3,7 @@
 use super::DistanceWarning;
 use super::centre::Measurement;
 use crate::terms::cubic::{Decay, DecayPoint};
+use crate::terms::response::{NoiseOfSample, TargetSample};
 
 /// Decays whose median signal-to-noise ratio is lower are left out: their distances are not reliable.
 const LEAST_SIGNAL_TO_NOISE: f64 = 10.0;
@@ -30,16 +31,54 @@ pub(super) struct Positions {
 struct Position {
     first_frame: usize,
     measurements: Vec<Measurement>,
+    /// Noise of the amplitude, of all pairs of repeated frames.
+    noise: Option<NoiseOfSample>,
 }
 
 impl Positions {
     /// Adds a frame of this number; where it `follows` the last one without a change of time, it may belong to the same
-    /// position.
-    pub(super) fn add(&mut self, frame: usize, measurement: Measurement, follows: bool) {
+    /// position. True where it does.
+    pub(super) fn add(&mut self, frame: usize, measurement: Measurement, follows: bool) -> bool {
         match self.reliable.last_mut() {
-            Some(last) if follows && last.holds(&measurement) => last.measurements.push(measurement),
-            _ => self.reliable.push(Position { first_frame: frame, measurements: vec![measurement] }),
+            Some(last) if follows && last.holds(&measurement) => {
+                last.measurements.push(measurement);
+                true
+            }
+            _ => {
+                let measurements = vec![measurement];
+                self.reliable.push(Position { first_frame: frame, measurements, noise: None });
+                false
+            }
         }
+    }
+
+    /// Adds the noise of one more pair of frames to the last position.
+    pub(super) fn add_noise(&mut self, found: NoiseOfSample) {
+        let Some(position) = self.reliable.last_mut() else { return };
+        let NoiseOfSample { variance_dn2, differences } = found;
+        position.noise = Some(match position.noise {
+            None => found,
+            Some(before) => {
+                let total = before.differences + differences;
+                let sum = before.variance_dn2 * before.differences + variance_dn2 * differences;
+                NoiseOfSample { variance_dn2: sum / total, differences: total }
+            }
+        });
+    }
+
+    /// What the response by amplitude and distance is fitted to: the positions from the brightest one on whose signal is
+    /// strong enough, also those of decays that are left out as a whole.
+    pub(super) fn samples(&self, integration_time_us: f64) -> Vec<TargetSample> {
+        let sorted = self.by_distance();
+        let strong = |position: &&&Position| position.mean(|m| m.signal_to_noise) >= LEAST_SIGNAL_TO_NOISE;
+        let sample = |position: &&Position| TargetSample { integration_time_us, ..position.sample() };
+        sorted[brightest(&sorted)..].iter().filter(strong).map(sample).collect()
+    }
+
+    fn by_distance(&self) -> Vec<&Position> {
+        let mut sorted: Vec<&Position> = self.reliable.iter().collect();
+        sorted.sort_by(|a, b| a.mean(|m| m.distance_m).total_cmp(&b.mean(|m| m.distance_m)));
+        sorted
     }
 
     /// A warning for each position within which the target moved.
@@ -62,11 +101,8 @@ impl Positions {
             warnings.push(DistanceWarning::FewReliable { recording, integration_time_us, reliable, frames });
             return None;
         }
-        let mut sorted: Vec<&Position> = self.reliable.iter().collect();
-        sorted.sort_by(|a, b| a.mean(|m| m.distance_m).total_cmp(&b.mean(|m| m.distance_m)));
-        let brightness = |p: &&Position| p.mean(|m| m.amplitude_dn);
-        let peak =
-            (0..sorted.len()).max_by(|&a, &b| brightness(&sorted[a]).total_cmp(&brightness(&sorted[b])))?;
+        let sorted = self.by_distance();
+        let peak = brightest(&sorted);
         if peak > 0 {
             let (recording, from_m) = (recording(), sorted[peak].mean(|m| m.distance_m));
             let positions = peak;
@@ -80,7 +116,7 @@ impl Positions {
         let usable = &sorted[peak..];
         let mut ratios: Vec<f64> = usable.iter().map(|p| p.mean(|m| m.signal_to_noise)).collect();
         ratios.sort_by(f64::total_cmp);
-        let signal_to_noise = ratios[ratios.len() / 2];
+        let signal_to_noise = *ratios.get(ratios.len() / 2)?;
         if signal_to_noise < LEAST_SIGNAL_TO_NOISE {
             let recording = recording();
             warnings.push(DistanceWarning::LowSignal { recording, integration_time_us, signal_to_noise });
@@ -92,7 +128,25 @@ impl Positions {
     }
 }
 
+/// Index of the position with the largest amplitude; 0 without positions.
+fn brightest(positions: &[&Position]) -> usize {
+    let brightness = |index: usize| positions[index].mean(|m| m.amplitude_dn);
+    (0..positions.len()).max_by(|&a, &b| brightness(a).total_cmp(&brightness(b))).unwrap_or(0)
+}
+
 impl Position {
+    fn sample(&self) -> TargetSample {
+        let pixels: f64 = self.measurements.iter().map(|m| m.pixels).sum();
+        let point = self.point();
+        TargetSample {
+            integration_time_us: f64::NAN,
+            distance_m: point.distance_m,
+            amplitude_dn: point.amplitude_dn,
+            relative_error: 1.0 / (self.mean(|m| m.signal_to_noise) * pixels.sqrt()),
+            noise: self.noise,
+        }
+    }
+
     fn holds(&self, next: &Measurement) -> bool {
         self.measurements.first().is_some_and(|first| {
             let noise_m = POSITION_STANDARD_ERRORS * first.distance_error_m.hypot(next.distance_error_m);

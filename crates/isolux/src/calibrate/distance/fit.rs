@@ -1,6 +1,6 @@
 //! Fits the terms `cubic` and `spline` to reference decays.
 
-use super::{DistanceWarning, ReferenceDecays};
+use super::{DistanceWarning, ReferenceDecays, ambient};
 use crate::calibrate::CalibrateSettings;
 use crate::calibration::Calibration;
 use crate::terms::cubic::{CubicError, Decay, DecayUse, Scaling};
@@ -39,9 +39,9 @@ impl Pooled {
     }
 }
 
-/// Fits cubic and spline and writes them into `calibration`: the cubic to the frames as delivered, the spline to
-/// `linear` frames where there are any. A spline that cannot be fitted is only a warning, because there is the
-/// cubic.
+/// Fits cubic, spline and the response by amplitude and distance, and writes them into `calibration`: the cubic to the
+/// frames as delivered, the spline to `linear` frames where there are any, else to amplitudes that this response makes
+/// linear, else to the frames as delivered. Only the cubic must be determined; the others give a warning.
 ///
 /// # Errors
 /// Why there is no cubic, with the warnings so far.
@@ -51,6 +51,7 @@ pub(in crate::calibrate) fn fit(
     linear: Vec<ReferenceDecays>,
     calibration: &mut Calibration,
 ) -> Result<DistanceFit, (CubicError, Vec<DistanceWarning>)> {
+    let ambient = ambient::fit(settings, &delivered);
     let Pooled { sources, decays, warnings: about_sweeps } = Pooled::of(delivered);
     let reference_m = settings.reference.distance_m;
     let (cubic, uses) = Cubic::fit(&decays, reference_m).map_err(|source| (source, about_sweeps.clone()))?;
@@ -64,7 +65,19 @@ pub(in crate::calibrate) fn fit(
             warnings.push(warning);
         }
     }
-    let smooth = if linear.decays.is_empty() { &decays } else { &linear.decays };
+    let by_ambient = match ambient {
+        Ok(response) => {
+            let linear = ambient::linear(&response, &decays);
+            ambient::keep(settings, response, calibration);
+            linear
+        }
+        Err(reason) => {
+            warnings.push(DistanceWarning::NoAmbient { reason });
+            Vec::new()
+        }
+    };
+    let candidates = [&linear.decays, &by_ambient, &decays];
+    let smooth = candidates.into_iter().find(|decays| !decays.is_empty()).unwrap_or(&decays);
     let mut spline_uses = Vec::new();
     match Spline::fit(smooth, reference_m, settings.modulation_frequency_hz) {
         Ok((spline, uses)) => {

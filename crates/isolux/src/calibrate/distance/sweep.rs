@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use super::DistanceWarning;
 use super::centre::{Measurement, measure};
 use super::decay::Positions;
+use super::repeats::Repeats;
 use crate::calibrate::sweep_frames::{SweepFrames, single_or_unknown_time};
 use crate::calibrate::{CalibrateSettings, MeasureError};
 use crate::frame::Frame;
 use crate::terms::Source;
 use crate::terms::cubic::Decay;
+use crate::terms::response::TargetSample;
 
 /// The target is tilted if the distance changes by more than this share across the window.
 const TILT_SHARE: f64 = 0.02;
@@ -23,6 +25,7 @@ pub struct DistanceSweep {
     times: BTreeMap<u64, Positions>,
     /// Time of the last position, so that a change of time starts a new one.
     last_time: Option<u64>,
+    repeats: Repeats,
     widest: Option<Widest>,
 }
 
@@ -41,6 +44,8 @@ pub struct ReferenceDecays {
     pub source: Source,
     /// Decays by increasing time, without over-saturated positions and weak decays.
     pub decays: Vec<Decay>,
+    /// The positions at known times, for the response by amplitude and distance.
+    pub samples: Vec<TargetSample>,
     /// What was left out, and what the recording lacks.
     pub warnings: Vec<DistanceWarning>,
 }
@@ -54,6 +59,7 @@ impl DistanceSweep {
             unusable: 0,
             times: BTreeMap::new(),
             last_time: None,
+            repeats: Repeats::default(),
             widest: None,
         }
     }
@@ -71,13 +77,15 @@ impl DistanceSweep {
             return Ok(());
         }
         match measure(frame, distances_m.values(), self.frames.settings.window_px) {
-            Some(measurement) => self.add(time_us.to_bits(), number, measurement),
+            Some(measurement) => {
+                self.add(time_us.to_bits(), number, measurement, (frame, distances_m.values()))
+            }
             None => self.unusable += 1,
         }
         Ok(())
     }
 
-    fn add(&mut self, time: u64, frame: usize, measurement: Measurement) {
+    fn add(&mut self, time: u64, number: usize, measurement: Measurement, frame: (&Frame, &[f32])) {
         let positions = self.times.entry(time).or_default();
         if !measurement.is_reliable() {
             positions.unreliable += 1;
@@ -85,10 +93,14 @@ impl DistanceSweep {
         }
         let tilt = measurement.tilt();
         if self.widest.is_none_or(|widest| tilt > widest.tilt) {
-            self.widest = Some(Widest { frame, tilt, spread_m: measurement.spread_m });
+            self.widest = Some(Widest { frame: number, tilt, spread_m: measurement.spread_m });
         }
         let follows = self.last_time.replace(time) == Some(time);
-        positions.add(frame, measurement, follows);
+        let repeats = positions.add(number, measurement, follows);
+        let (frame, distances_m) = frame;
+        if let Some(noise) = self.repeats.push(frame, distances_m, &measurement, repeats) {
+            positions.add_noise(noise);
+        }
     }
 
     /// Ends the sweep: one decay per time, each starting where over-saturation ends.
@@ -108,16 +120,17 @@ impl DistanceSweep {
             let Widest { frame, spread_m, .. } = widest;
             warnings.push(DistanceWarning::TargetNotFronto { recording: recording.clone(), frame, spread_m });
         }
-        let (mut decays, mut used) = (Vec::new(), 0);
+        let (mut decays, mut samples, mut used) = (Vec::new(), Vec::new(), 0);
         for (&bits, positions) in &self.times {
             warnings.extend(positions.moved(recording));
             let time_us = Some(f64::from_bits(bits)).filter(|time| !time.is_nan());
+            samples.extend(time_us.map(|time_us| positions.samples(time_us)).unwrap_or_default());
             if let Some((decay, frames)) = positions.decay(recording, time_us, &mut warnings) {
                 decays.push(decay);
                 used += frames;
             }
         }
-        ReferenceDecays { source: self.frames.source(used), decays, warnings }
+        ReferenceDecays { source: self.frames.source(used), decays, samples, warnings }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::advice::Advice;
+use crate::terms::response::AmbientError;
 use crate::terms::spline::SplineError;
 
 /// A warning about a distance sweep, with its numbers.
@@ -89,6 +90,11 @@ pub enum DistanceWarning {
         /// Why.
         reason: SplineError,
     },
+    /// The response by amplitude and distance could not be fitted.
+    NoAmbient {
+        /// Why.
+        reason: AmbientError,
+    },
     /// A decay of which many positions contradict the others.
     Outliers {
         /// Integration time, µs.
@@ -164,6 +170,9 @@ impl fmt::Display for DistanceWarning {
                 time(*integration_time_us)
             ),
             Self::NoSpline { reason } => write!(f, "distance sweep: no spline beside the cubic: {reason}"),
+            Self::NoAmbient { reason } => {
+                write!(f, "distance sweep: no response by amplitude and distance (`ambient`): {reason}")
+            }
             Self::Outliers { integration_time_us, outliers, positions } => write!(
                 f,
                 "distance sweep, {}: {outliers} of {positions} positions contradict the other times and do not count \

@@ -49,6 +49,7 @@ pub(in crate::calibrate) fn fit_response(
         scalar,
         amplitude,
         pixel,
+        ambient: None,
         intensity,
         phase_samples,
         warnings: missing.iter().map(ToString::to_string).collect(),

@@ -1,4 +1,4 @@
-//! `response`: corrects amplitudes for saturation, in up to five tiers that differ in the channel that shows the
+//! `response`: corrects amplitudes for saturation, in up to six tiers that differ in the channel that shows the
 //! fill of a pixel.
 //!
 //! A pixel saturates by its total charge, ambient light included, not by its amplitude: `A_lin = A / f′(x)`, with x
@@ -11,6 +11,7 @@
 //! | [`ScalarResponse`] | mean of the image | what a lookup table does |
 //! | [`AmplitudeResponse`] | amplitude of the pixel | compression without ambient light |
 //! | [`PixelResponse`] | static scene at several times | compression of each pixel of that scene |
+//! | [`AmbientResponse`] | amplitude, distance, ambient light | compression by any light of even ambient |
 //! | [`IntensityResponse`] | DC image | compression by any light |
 //! | [`PhaseSampleResponse`] | the four raw bins | the same, without approximation, and that of the distance |
 //!
@@ -18,6 +19,7 @@
 //! Times `t_ref / t`, it is what that pixel would deliver at the reference time. A pixel that saturates at the
 //! reference time is therefore corrected there too: its multiplier is not 1.
 
+mod ambient;
 mod amplitude;
 mod error;
 mod fill_time;
@@ -35,6 +37,8 @@ mod tier;
 mod well;
 mod well_fit;
 
+pub use ambient::{AmbientError, AmbientNoise, AmbientResponse, NoiseOfSample, TargetSample};
+pub(crate) use ambient::{PlannedAmbient, Recovered};
 pub use amplitude::AmplitudeResponse;
 pub(crate) use amplitude::PlannedAmplitude;
 pub use error::ResponseError;

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::ambient::AmbientResponse;
 use super::amplitude::AmplitudeResponse;
 use super::intensity::IntensityResponse;
 use super::phase_samples::PhaseSampleResponse;
@@ -25,6 +26,9 @@ pub struct Response {
     /// Of one static scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixel: Option<PixelResponse>,
+    /// From amplitude and distance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ambient: Option<AmbientResponse>,
     /// From intensity and amplitude.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intensity: Option<IntensityResponse>,
@@ -39,11 +43,27 @@ impl Response {
     /// Parameter version that this library writes.
     pub const VERSION: u32 = 1;
 
+    /// A response without any tier.
+    #[must_use]
+    pub(crate) fn empty() -> Self {
+        Self {
+            version: Self::VERSION,
+            scalar: None,
+            amplitude: None,
+            pixel: None,
+            ambient: None,
+            intensity: None,
+            phase_samples: None,
+            warnings: Vec::new(),
+        }
+    }
+
     /// The tiers that were fitted and hold for any scene, the best first.
     pub fn tiers(&self) -> impl Iterator<Item = ResponseTier> {
         let tiers = [
             self.phase_samples.as_ref().map(|_| ResponseTier::PhaseSamples),
             self.intensity.as_ref().map(|_| ResponseTier::Intensity),
+            self.ambient.as_ref().map(|_| ResponseTier::Ambient),
             self.amplitude.as_ref().map(|_| ResponseTier::Amplitude),
             self.scalar.as_ref().map(|_| ResponseTier::Scalar),
         ];
@@ -67,6 +87,7 @@ impl Parameters for Response {
         here.optional(&self.scalar)?;
         here.optional(&self.amplitude)?;
         here.optional(&self.pixel)?;
+        here.optional(&self.ambient)?;
         here.optional(&self.intensity)?;
         here.optional(&self.phase_samples)
     }

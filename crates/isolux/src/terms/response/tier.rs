@@ -13,6 +13,8 @@ named! {
         Amplitude = "amplitude",
         /// By the time, for the static scene of the sweep and no other; never chosen unless asked for.
         Pixel = "pixel",
+        /// By amplitude and distance, because a surface reflects ambient light and the camera's own alike.
+        Ambient = "ambient",
         /// By intensity and amplitude.
         Intensity = "intensity",
         /// By the raw bins; repairs the distance too.
@@ -26,6 +28,7 @@ impl ResponseTier {
     pub fn channels(self) -> Channels {
         match self {
             Self::Scalar | Self::Amplitude | Self::Pixel => Channels::empty(),
+            Self::Ambient => Channels::DISTANCE,
             Self::Intensity => Channels::INTENSITY,
             Self::PhaseSamples => Channels::PHASE_SAMPLES,
         }

@@ -1,12 +1,15 @@
 //! The law over distance: its coefficients, its value at a distance, and the check.
 
+use serde::{Deserialize, Serialize};
+
 use super::Harmonic;
 use crate::numerics::bspline::Basis;
 use crate::terms::check::{Check, ParameterError};
 use crate::terms::{DistanceGain, DistanceLaw, DistanceTable, MULTIPLIER_LIMITS};
 
 /// A law over distance: `ln h = −2 ln(d/d_ref) + Σ c_k B_k(ln d) + harmonic`, slope −2 outside.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Law {
     /// Radial distance at which h = 1, m: that of the calibration.
     pub reference_distance_m: f64,
@@ -16,6 +19,7 @@ pub struct Law {
     /// intervals, dimensionless.
     pub coefficients: Vec<f64>,
     /// The aliased harmonic; absent where the modulation frequency is unknown or the decays do not show it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub harmonic: Option<Harmonic>,
     /// Weight of the curvature `∫ s″² d(ln d)` against the mean squared residual.
     pub curvature_weight: f64,
@@ -70,7 +74,7 @@ impl Law {
     }
 
     /// Refuses values that no fit gives.
-    pub(super) fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
+    pub(in crate::terms) fn check_at(&self, here: &Check<'_>) -> Result<(), ParameterError> {
         let [min_m, max_m] = self.valid_distance_m;
         // As far as the tables of the hot loop reach.
         let ordered = 1e-4 <= min_m && min_m < max_m && max_m <= 1e5;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::frame::Plane;
+use crate::frame::Shape;
 use crate::numerics::hash::splitmix64;
 
 const READ_DN2: f64 = 4.0;
