@@ -1,6 +1,6 @@
 fn main() {
     use isolux_experiments::unseen::{chains, decay, held_out::HeldOut, still};
-    for seed in [101, 102, 103] {
+    for seed in std::env::args().skip(1).map(|s| s.parse::<u64>().unwrap()) {
         let t = std::time::Instant::now();
         let camera = HeldOut::new(seed).unwrap();
         eprintln!("calibrated in {:?}", t.elapsed());

@@ -15,6 +15,8 @@ pub enum Work {
     ReadingTimes,
     /// Estimating the noise of the amplitude from a recording.
     EstimatingNoise,
+    /// Estimating the ambient light of a recording.
+    EstimatingAmbientLight,
     /// Evaluating a recording before and after standardization.
     Evaluating,
     /// Diagnosing a recording.
@@ -39,6 +41,7 @@ impl fmt::Display for Work {
             Self::Standardizing => "standardizing",
             Self::ReadingTimes => "reading times",
             Self::EstimatingNoise => "estimating the noise",
+            Self::EstimatingAmbientLight => "estimating the ambient light",
             Self::Evaluating => "evaluating",
             Self::Diagnosing => "diagnosing",
             Self::ExposureSweep => "exposure sweep",

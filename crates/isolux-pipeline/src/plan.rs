@@ -5,6 +5,8 @@ use isolux::standardize::SigmaStep;
 use isolux::terms::NoiseModel;
 use isolux::{Calibration, Channels, Choice, RecordingTraits, Standardizer};
 
+mod light;
+
 use crate::error::PipelineError;
 use crate::frames;
 use crate::observer::{Observer, Work};
@@ -12,7 +14,7 @@ use crate::remark::Remark;
 use crate::source::FrameSource;
 
 /// Plans the chain for a recording. Where the standard deviation is required and the noise is unknown, the
-/// recording is read once to estimate it. The observer receives the notes of the plan as remarks.
+/// recording is read once to estimate it; where the response needs the ambient light, some frames are read. The observer receives the notes of the plan as remarks.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
@@ -32,7 +34,7 @@ pub fn plan(
 pub fn plan_with(
     choice: &Choice,
     calibration: Option<&Calibration>,
-    traits: RecordingTraits,
+    mut traits: RecordingTraits,
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<Standardizer, PipelineError> {
@@ -40,6 +42,11 @@ pub fn plan_with(
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
     if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {
         choice.noise = Some(estimate_noise(source, observer)?);
+    }
+    if traits.ambient_light.is_none()
+        && let Some(response) = Standardizer::wants_ambient_light(&choice, calibration, &traits)
+    {
+        traits.ambient_light = light::estimate(response, source, observer)?;
     }
     let standardizer = Standardizer::plan(&choice, calibration, traits)?;
     standardizer.notes().iter().for_each(|note| observer.remark(Remark::Plan(note.clone())));

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use isolux::Advice;
+use isolux::calibrate::AmbientUnknown;
 use isolux::standardize::Note;
 
 /// How much a remark matters.
@@ -26,6 +27,13 @@ pub enum Remark {
         /// The recording.
         recording: String,
     },
+    /// The ambient light of a recording is not known.
+    AmbientLightUnknown {
+        /// The recording.
+        recording: String,
+        /// Why.
+        cause: AmbientUnknown,
+    },
     /// The scene of an evaluation did not stand still.
     SceneMoved {
         /// Share of the scene that moved, 0 to 1.
@@ -47,7 +55,9 @@ impl Remark {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
-            Self::Plan(_) | Self::NoiseFromNeighbours { .. } => Severity::Note,
+            Self::Plan(_) | Self::NoiseFromNeighbours { .. } | Self::AmbientLightUnknown { .. } => {
+                Severity::Note
+            }
             Self::SceneMoved { .. } | Self::CamerasDiffer { .. } | Self::FrequenciesDiffer => {
                 Severity::Warning
             }
@@ -74,6 +84,9 @@ impl fmt::Display for Remark {
                 "`{recording}`: no two consecutive frames share an integration time: the noise is taken from \
                  neighbouring pixels, texture included"
             ),
+            Self::AmbientLightUnknown { recording, cause } => {
+                write!(f, "`{recording}`: its ambient light is not known: {cause}")
+            }
             Self::SceneMoved { share, integration_time_us } => write!(
                 f,
                 "the scene did not stand still ({:.0} % of it has moved at {integration_time_us} µs): figures over \

@@ -46,7 +46,7 @@ fn describe(summary: &Summary) -> String {
     let mut lines = vec![format!("{} frames, {} of the pixels valid", summary.frames, share(summary.valid))];
     let remarks = [
         (summary.time_refused, "refused: integration time above the calibrated range, or unknown"),
-        (summary.time_extrapolated, "below the calibrated integration times, continued as 1/t (flagged)"),
+        (summary.time_extrapolated, "outside the calibrated integration times, continued as 1/t (flagged)"),
         (summary.distance_extrapolated, "outside the calibrated distances, continued as d² (flagged)"),
         (
             summary.illumination_extrapolated,

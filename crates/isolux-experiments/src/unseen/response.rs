@@ -4,12 +4,15 @@
 mod exposures;
 mod stack;
 
-use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
-use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
+use isolux::calibrate::{self, AmbientSurvey, CalibrateSettings, ExposureSweep};
+use isolux::standardize::{AmbientLight, DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
-use isolux::{Calibration, Channels, Choice, PixelFlags, Plane, Reference, Standardizer, Stream};
+use isolux::{
+    Calibration, Channels, Choice, PixelFlags, Plane, RecordingTraits, Reference, Standardizer, Stream,
+};
 use isolux_camera::{SimulatedFrame, Simulation};
 
+use super::held_out::HeldOut;
 use crate::error::ExperimentError;
 use crate::measure::time_us;
 use exposures::{camera_of, for_each, longest_us, simulation};
@@ -55,11 +58,14 @@ const FITTED_TIMES: u32 = 16;
 const SPAN: f64 = 8.0;
 /// Frames of each exposure that is fitted on.
 const FITTED_FRAMES: u32 = 32;
-const METHODS: [(&str, TimeStep, Option<ResponseTier>); 7] = [
+/// Frames of each exposure that the ambient light is estimated from.
+const SURVEYED_FRAMES: u32 = 4;
+const METHODS: [(&str, TimeStep, Option<ResponseTier>); 8] = [
     ("lut", TimeStep::Lut, None),
     ("linear", TimeStep::Linear, None),
     ("scalar", TimeStep::Response, Some(ResponseTier::Scalar)),
     ("amplitude", TimeStep::Response, Some(ResponseTier::Amplitude)),
+    ("ambient", TimeStep::Response, Some(ResponseTier::Ambient)),
     ("pixel", TimeStep::Response, Some(ResponseTier::Pixel)),
     ("intensity", TimeStep::Response, Some(ResponseTier::Intensity)),
     ("phase_samples", TimeStep::Response, Some(ResponseTier::PhaseSamples)),
@@ -87,18 +93,23 @@ pub fn measure(
         FittedOn::Wall => "wall-sweep",
     };
     let sweep = simulation(scene, &model, light, &fitted_times, (FITTED_FRAMES, 2 * camera))?;
-    let calibration = calibrate(&sweep, &fitted_times)?;
+    let mut calibration = calibrate(&sweep, &fitted_times)?;
+    if let Some(response) = &mut calibration.terms.response {
+        response.ambient = HeldOut::new(camera)?.from_amplitude.terms.response.and_then(|r| r.ambient);
+    }
     let tested = simulation("office-desk", &model, light, &tested_times, (TEST_FRAMES, 2 * camera + 1))?;
+    let ambient_light = ambient_light(&calibration, &tested)?;
     let fitted = |tier| match (tier, &calibration.terms.response) {
         (None, _) => true,
         (Some(ResponseTier::Pixel), Some(response)) => {
             response.pixel.is_some() && fitted_on == FittedOn::Scene
         }
+        (Some(ResponseTier::Ambient), Some(_)) => ambient_light.is_some(),
         (Some(tier), Some(response)) => response.tiers().any(|fitted| fitted == tier),
         (Some(_), None) => false,
     };
     let methods: Vec<_> = METHODS.into_iter().filter(|(_, _, tier)| fitted(*tier)).collect();
-    let plans = methods.iter().map(|(_, time, tier)| plan(&calibration, *time, *tier));
+    let plans = methods.iter().map(|(_, time, tier)| plan(&calibration, *time, *tier, &ambient_light));
     let (stacks, truth) = measured(&tested, &plans.collect::<Result<Vec<_>, _>>()?)?;
     let figure = |(stack, (method, ..)): (&Stack, &(&'static str, TimeStep, Option<ResponseTier>))| {
         let [median_cv, p95_cv] = stack.variation(stack);
@@ -122,6 +133,7 @@ fn plan(
     calibration: &Calibration,
     time: TimeStep,
     response_tier: Option<ResponseTier>,
+    ambient_light: &Option<AmbientLight>,
 ) -> Result<Standardizer, ExperimentError> {
     let choice = Choice {
         time: Some(time),
@@ -130,9 +142,36 @@ fn plan(
         specular: Some(SpecularStep::None),
         ..Choice::default()
     };
-    let channels =
-        Channels::AMPLITUDE | Channels::INTEGRATION_TIME | Channels::INTENSITY | Channels::PHASE_SAMPLES;
-    Ok(Standardizer::plan(&choice, Some(calibration), channels)?)
+    let channels = Channels::AMPLITUDE
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::INTENSITY
+        | Channels::PHASE_SAMPLES;
+    let traits = RecordingTraits { ambient_light: ambient_light.clone(), ..channels.into() };
+    Ok(Standardizer::plan(&choice, Some(calibration), traits)?)
+}
+
+/// The ambient light by the noise of the first frames of each exposure.
+fn ambient_light(
+    calibration: &Calibration,
+    tested: &Simulation,
+) -> Result<Option<AmbientLight>, ExperimentError> {
+    let response = calibration.terms.response.as_ref().and_then(|response| response.ambient.as_ref());
+    let Some(response) = response else { return Ok(None) };
+    let mut survey = AmbientSurvey::new(response);
+    let mut out = SimulatedFrame::new(tested.shape());
+    for exposure in (0..tested.len()).step_by(TEST_FRAMES as usize) {
+        survey.part(exposure);
+        for index in exposure..(exposure + SURVEYED_FRAMES as usize).min(tested.len()) {
+            tested.render_frame(index, &mut out)?;
+            survey.push(&out.frame);
+        }
+    }
+    let found = survey.finish();
+    if std::env::var("LIGHT").is_ok() {
+        eprintln!("light {found:?} calibrated {}", response.ambient_dn_per_us);
+    }
+    Ok(found.ok())
 }
 
 /// The reference time is one of the sweep's in the middle, which every camera's table covers. The sweep is measured here

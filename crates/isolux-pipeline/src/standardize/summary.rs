@@ -14,7 +14,7 @@ pub struct Summary {
     pub valid: usize,
     /// Measured pixels whose integration time is unknown or above the calibrated range; they become INVALID.
     pub time_refused: usize,
-    /// Measured pixels whose integration time is below the calibrated range; extrapolated as 1/t and flagged.
+    /// Measured pixels whose integration time is outside the calibrated range; extrapolated as 1/t and flagged.
     pub time_extrapolated: usize,
     /// Pixels outside the calibrated distances; extrapolated as d² and flagged.
     pub distance_extrapolated: usize,

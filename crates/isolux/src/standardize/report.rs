@@ -27,6 +27,8 @@ pub enum Note {
         /// The terms that are used.
         terms: String,
     },
+    /// Nothing tells `best` how full the pixels are: it does not correct for saturation.
+    FillUnknown,
     /// `best` leaves out the step for the integration time, because the calibration has no term for it.
     NoTimeTerm,
     /// `best` leaves out the step for the distance, because the calibration has no term for it.
@@ -63,7 +65,10 @@ impl Note {
             Self::NoDistanceTerm => Some(Advice::UseDistanceStep(DistanceStep::Square)),
             Self::Lambert => Some(Advice::CalibrateFrom(RecordingKind::Target)),
             Self::FrequencyUnknown => Some(Advice::GiveModulationFrequency),
-            Self::ChannelMissing { .. } | Self::NothingToDenoise | Self::ProfileFormat { .. } => None,
+            Self::ChannelMissing { .. }
+            | Self::FillUnknown
+            | Self::NothingToDenoise
+            | Self::ProfileFormat { .. } => None,
         }
     }
 }
@@ -75,6 +80,10 @@ impl fmt::Display for Note {
                 f,
                 "no calibration given: {terms} is textbook physics, not this camera. A calibration holds its \
                  saturation and its own distance law"
+            ),
+            Self::FillUnknown => f.write_str(
+                "how full the pixels are is not known: amplitudes are scaled by the integration time, and not corrected \
+                 for saturation",
             ),
             Self::NoTimeTerm => f.write_str("the calibration has no `lut`: this step is left out"),
             Self::NoDistanceTerm => f.write_str("the calibration has neither `spline` nor `cubic`: this step is left out"),

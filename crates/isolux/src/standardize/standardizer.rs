@@ -5,17 +5,19 @@ use std::sync::Arc;
 use super::apply::apply;
 use super::error::StandardizeError;
 use super::plan::Plan;
+use super::planner::Planner;
 use super::prepared::Prepared;
 use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
 use super::standardized::Standardized;
-use super::steps::response::SaturationCorrection;
+use super::steps::response::{SaturationCorrection, wants_ambient_light};
 use super::workspace::Workspace;
 use crate::calibration::Calibration;
 use crate::choice::Choice;
 use crate::denoise::{DenoiseRule, TemporalMean};
 use crate::frame::{Channels, Frame};
 use crate::specular::SpecularRule;
+use crate::terms::response::AmbientResponse;
 
 /// A chain of corrections, ready to apply to any frame of a recording. It is cheap to clone and can be shared
 /// between threads.
@@ -41,6 +43,18 @@ impl Standardizer {
         recording: impl Into<RecordingTraits>,
     ) -> Result<Self, PlanError> {
         Ok(Self { plan: Arc::new(Plan::new(choice, calibration, recording.into())?) })
+    }
+
+    /// The response that the plan of this choice would use if the ambient light of the recording were known: estimate it
+    /// with an [`AmbientSurvey`](crate::calibrate::AmbientSurvey) and put it into
+    /// [`RecordingTraits::ambient_light`]. `None` where the plan does not need it.
+    #[must_use]
+    pub fn wants_ambient_light<'a>(
+        choice: &'a Choice,
+        calibration: Option<&'a Calibration>,
+        traits: &RecordingTraits,
+    ) -> Option<&'a AmbientResponse> {
+        wants_ambient_light(&Planner::new(choice, calibration, traits.clone()))
     }
 
     /// The steps, in the order in which they are applied.

@@ -5,7 +5,9 @@ use isolux::standardize::{DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::cubic::{Decay, DecayPoint};
 use isolux::terms::lut::ExposureSample;
 use isolux::terms::noise::{AmplitudeNoise, IntensityNoise, Noise};
-use isolux::terms::response::{FullWell, PhaseSampleResponse, PixelResponse, Response};
+use isolux::terms::response::{
+    AmbientNoise, AmbientResponse, FullWell, PhaseSampleResponse, PixelResponse, Response,
+};
 use isolux::terms::spline::{Harmonic, Law};
 use isolux::terms::{Cubic, FitQuality, Lut, Source, Spline};
 use isolux::{
@@ -149,7 +151,32 @@ fn wells() -> impl Strategy<Value = FullWell> {
     })
 }
 
-/// Two tiers of different kinds, one of them a map of 2×3 pixels.
+fn ambient_responses() -> impl Strategy<Value = AmbientResponse> {
+    let noise = (0.0..1e3f64, 1e-6..1e3f64).prop_map(|(read_variance_dn2, shot_variance_dn2_per_dn)| {
+        AmbientNoise { read_variance_dn2, shot_variance_dn2_per_dn }
+    });
+    let light = (1.0..10.0f64, 0.0..1e3f64, 1e-3..1e3f64, prop::option::of(noise));
+    let well = (1.0..1e5f64, 1.0..16.0f64, 0.5..1.0f64);
+    (well, light, splines(), prop::option::of(1e6..1e8f64)).prop_map(
+        |((full_well_dn, softness, clip), (own_charge, ambient, target, noise), spline, frequency_hz)| {
+            AmbientResponse {
+                full_well_dn,
+                softness,
+                clip,
+                own_charge,
+                ambient_dn_per_us: ambient,
+                target_dn_per_us: target,
+                law: spline.law,
+                modulation_frequency_hz: frequency_hz,
+                noise,
+                fitted_on: spline.fitted_on,
+                fit: spline.fit,
+            }
+        },
+    )
+}
+
+/// Three tiers of different kinds, one of them a map of 2×3 pixels.
 pub fn responses() -> impl Strategy<Value = Response> {
     let map = prop::collection::vec(prop::option::of(1e-2..1e6f32), 6);
     let pixel = (map, 1.0..16.0f64, 0.1..1.0f64, sources(), quality()).prop_map(
@@ -172,16 +199,16 @@ pub fn responses() -> impl Strategy<Value = Response> {
             fit,
         },
     );
-    (prop::option::of(pixel), prop::option::of(bins), words()).prop_map(|(pixel, phase_samples, warnings)| {
-        Response {
-            version: Response::VERSION,
-            scalar: None,
-            amplitude: None,
-            pixel,
-            intensity: None,
-            phase_samples,
-            warnings,
-        }
+    let tiers = (prop::option::of(pixel), prop::option::of(ambient_responses()), prop::option::of(bins));
+    (tiers, words()).prop_map(|((pixel, ambient, phase_samples), warnings)| Response {
+        version: Response::VERSION,
+        scalar: None,
+        amplitude: None,
+        pixel,
+        ambient,
+        intensity: None,
+        phase_samples,
+        warnings,
     })
 }
 

@@ -18,8 +18,15 @@ use crate::terms::{Lut, linear};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum TimePlan {
     Lut(Lut),
-    Scalar { response: ScalarResponse, reference_us: f64 },
-    Linear { reference_us: f64 },
+    Scalar {
+        response: ScalarResponse,
+        reference_us: f64,
+    },
+    /// Times above the longest that was calibrated, where there is one, are flagged: pixels may be saturated there.
+    Linear {
+        reference_us: f64,
+        longest_us: Option<f64>,
+    },
     None,
 }
 
@@ -40,9 +47,16 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
     }
     let reference_us =
         planner.calibration.and_then(|c| c.reference.integration_time_us).unwrap_or(REFERENCE_TIME_US);
+    let longest_us = planner
+        .calibration
+        .and_then(|c| c.terms.lut.as_ref())
+        .map(|lut| lut.valid_integration_time_us[1])
+        .filter(|_| named.is_none());
     let (plan, correction, parameters) = match wanted {
         TimeStep::None => return Ok((TimePlan::None, None)),
-        TimeStep::Linear => (TimePlan::Linear { reference_us }, None, format!("{reference_us} µs / t")),
+        TimeStep::Linear => {
+            (TimePlan::Linear { reference_us, longest_us }, None, format!("{reference_us} µs / t"))
+        }
         TimeStep::Lut => {
             let lut = planner.calibration.and_then(|c| c.terms.lut.clone());
             let lut = lut.ok_or_else(|| planner.missing(term, RecordingKind::ExposureSweep))?;
@@ -55,7 +69,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
                 (TimePlan::Scalar { response, reference_us }, None, words)
             }
             (PlannedResponse::PerPixel(correction), words) => {
-                (TimePlan::Linear { reference_us }, Some(correction), words)
+                (TimePlan::Linear { reference_us, longest_us: None }, Some(correction), words)
             }
         },
     };
@@ -63,18 +77,22 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
     Ok((plan, correction))
 }
 
-/// The time step of the method; adds a note when `best` has no term for it.
+/// The time step of the method; adds a note when `best` does not know the fill of the pixels.
+///
+/// Where it is not known, `t_ref / t` is right for every pixel that does not saturate. The table is right for the mean of
+/// the scene that it was fitted on: it corrects dim pixels of other scenes by the saturation of that scene's bright ones.
 fn default_step(planner: &mut Planner<'_>) -> TimeStep {
     match (planner.choice.method, planner.calibration) {
         (Method::Paper, _) => TimeStep::Lut,
         (Method::Best, None) => TimeStep::Linear,
         (Method::Best, Some(_)) if response::measures_the_fill(planner) => TimeStep::Response,
-        (Method::Best, Some(calibration)) if calibration.terms.lut.is_some() => TimeStep::Lut,
-        (Method::Best, Some(_)) => {
-            if planner.traits.channels.contains(Channels::INTEGRATION_TIME) {
-                planner.notes.push(Note::NoTimeTerm);
+        (Method::Best, Some(calibration)) => {
+            let timed = planner.traits.channels.contains(Channels::INTEGRATION_TIME);
+            let referred = calibration.reference.integration_time_us.is_some();
+            if timed {
+                planner.notes.push(if referred { Note::FillUnknown } else { Note::NoTimeTerm });
             }
-            TimeStep::None
+            if referred { TimeStep::Linear } else { TimeStep::None }
         }
     }
 }
@@ -110,7 +128,7 @@ pub(crate) struct TimeGains<'a> {
 pub(crate) struct Uncovered {
     /// Time above the range, or unknown.
     pub(crate) refused: usize,
-    /// Time below the range.
+    /// Time outside the range, but with a multiplier.
     pub(crate) extrapolated: usize,
 }
 
@@ -172,8 +190,10 @@ fn answer(plan: &TimePlan, time_us: f64) -> Answer {
     }
     match plan {
         TimePlan::None => (1.0, PixelFlags::empty()),
-        TimePlan::Linear { reference_us } => {
-            (linear::multiplier(time_us, *reference_us) as f32, PixelFlags::empty())
+        TimePlan::Linear { reference_us, longest_us } => {
+            let beyond = longest_us.is_some_and(|longest_us| time_us > longest_us);
+            let gain = linear::multiplier(time_us, *reference_us) as f32;
+            (gain, PixelFlags::TIME_OUT_OF_RANGE.when(beyond))
         }
         TimePlan::Lut(lut) => flagged(lut.at(time_us)),
         TimePlan::Scalar { response, reference_us } => flagged(response.at(time_us, *reference_us)),
@@ -220,7 +240,7 @@ mod tests {
         frame.integration_time_us =
             IntegrationTime::PerPixel(Plane::from_vec(Shape::new(3, 3), times.to_vec()).unwrap());
         let (mut memory, mut flags) = (Vec::new(), [PixelFlags::empty(); 9]);
-        let plan = TimePlan::Linear { reference_us: 1000.0 };
+        let plan = TimePlan::Linear { reference_us: 1000.0, longest_us: None };
         flags[4] = PixelFlags::INVALID;
         let found = gains(&plan, &frame, &mut memory, &mut flags).unwrap();
         assert_eq!(found.uncovered, Uncovered { refused: 1, extrapolated: 0 });

@@ -9,9 +9,10 @@ use crate::frame::Channels;
 use crate::standardize::AmbientLight;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::PlanError;
+use crate::step_names::{Method, TimeStep};
 use crate::terms::response::{
-    PlannedAmbient, PlannedAmplitude, PlannedBins, PlannedIntensity, PlannedPixels, Response, ResponseTier,
-    ScalarResponse,
+    AmbientResponse, PlannedAmbient, PlannedAmplitude, PlannedBins, PlannedIntensity, PlannedPixels,
+    Response, ResponseTier, ScalarResponse,
 };
 
 /// What the step does: a multiplier over the integration time, or a saturation correction of each pixel before
@@ -109,6 +110,22 @@ fn best_tier(planner: &Planner<'_>, response: &Response) -> Option<ResponseTier>
     let known =
         |tier: &ResponseTier| *tier != ResponseTier::Ambient || planner.traits.ambient_light.is_some();
     response.tiers().filter(known).find(|tier| planner.traits.channels.contains(tier.channels()))
+}
+
+/// The tier by amplitude and distance, where nothing better tells the fill and the plan would use it if the ambient light
+/// were known.
+pub(crate) fn wants_ambient_light<'a>(planner: &Planner<'a>) -> Option<&'a AmbientResponse> {
+    let response = planner.calibration?.terms.response.as_ref()?;
+    let ambient = response.ambient.as_ref()?;
+    let possible = |tier: &ResponseTier| planner.traits.channels.contains(tier.channels());
+    let tier = planner.choice.response_tier.or_else(|| response.tiers().find(possible));
+    let timed = match planner.choice.time {
+        Some(step) => step == TimeStep::Response,
+        None => planner.choice.method == Method::Best,
+    };
+    let channels = ResponseTier::Ambient.channels() | Channels::AMPLITUDE | Channels::INTEGRATION_TIME;
+    let fine = tier == Some(ResponseTier::Ambient) && timed && planner.traits.channels.contains(channels);
+    fine.then_some(ambient)
 }
 
 /// True when the recording and the calibration allow a tier that measures the fill of each pixel, which no table

@@ -16,6 +16,9 @@ mod light;
 mod model;
 mod planned;
 
+#[cfg(test)]
+mod tests;
+
 pub use fit::{AmbientError, NoiseOfSample, TargetSample};
 pub use model::{AmbientNoise, AmbientResponse};
 pub(crate) use planned::{PlannedAmbient, Recovered};
