@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // The default choice takes the best steps that the calibration allows. Without a calibration, these are
     // t_ref / t and (d / d_ref)².
     let choice = Choice::default();
-    let textbook = Standardizer::plan(&choice, None, traits)?;
+    let textbook = Standardizer::plan(&choice, None, traits.clone())?;
     show("without a calibration", &textbook, &frame)?;
 
     // The calibration knows how this camera saturates, and its own law over distance.

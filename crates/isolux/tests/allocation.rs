@@ -97,7 +97,7 @@ fn nothing_is_allocated_per_predicted_frame() {
             let sigma = SigmaStep::Required;
             let choice = Choice { denoise, sigma, noise, ..Choice::default() };
             let traits = RecordingTraits { modulation_frequency_hz, ..channels.into() };
-            let standardizer = Standardizer::plan(&choice, None, traits).unwrap();
+            let standardizer = Standardizer::plan(&choice, None, traits.clone()).unwrap();
             let (single, mut merge) = standardizer.bracket().unwrap();
             let (mut stream, mut merged) = (single.stream(), Standardized::new(shape));
             let mut before = 0;
@@ -157,6 +157,7 @@ fn a_stream_tells_the_bytes_that_it_holds() {
         shape: Some(shape),
         intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
         modulation_frequency_hz: None,
+        ambient_light: None,
     };
     for rule in DenoiseRule::ALL {
         let choice = Choice {
@@ -166,7 +167,7 @@ fn a_stream_tells_the_bytes_that_it_holds() {
             noise,
             ..Choice::default()
         };
-        let standardizer = Standardizer::plan(&choice, None, traits).unwrap();
+        let standardizer = Standardizer::plan(&choice, None, traits.clone()).unwrap();
         let before = BYTES.get();
         let mut stream = standardizer.stream();
         for _ in 0..2 * isolux::denoise::TemporalMean::FRAMES {
@@ -187,6 +188,7 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
         shape: Some(shape),
         intrinsics: Some(intrinsics),
         modulation_frequency_hz: None,
+        ambient_light: None,
     };
     let profile = Profile {
         version: 1,

@@ -32,8 +32,14 @@ pub enum Ambient {
 }
 
 impl Ambient {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Same, Self::Dark, Self::Threefold];
+    /// As a figure names it.
+    pub(super) fn describe(self) -> &'static str {
+        match self {
+            Self::Dark => "in the dark",
+            Self::Same => "in the light of the calibration",
+            Self::Threefold => "in three times the light of the calibration",
+        }
+    }
 
     fn of_calibration(self) -> f64 {
         match self {
@@ -53,6 +59,14 @@ pub struct Decay {
     pub positions: usize,
     /// Positions with enough signal.
     pub of: usize,
+}
+
+impl Decay {
+    /// Share of the positions that entered.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.positions as f64 / self.of as f64
+    }
 }
 
 /// A board before a held-out camera: every chain's decay, in their order.

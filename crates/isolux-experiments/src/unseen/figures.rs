@@ -4,6 +4,7 @@ use isolux::DenoiseRule;
 
 use super::bracket::{self, BracketCase};
 use super::chains::{self, Chain};
+use super::decay::{Ambient, Decay};
 use super::denoise::{self, Bars};
 use super::figure::{Aim, Figure, Unit, largest, smallest};
 use super::held_out::{CAMERAS, HeldOut};
@@ -17,6 +18,8 @@ use crate::error::ExperimentError;
 pub(crate) const DECAY_CV: f64 = 0.015;
 /// The most that the typical pixel of a still scene is to vary over integration times, beside the noise floor.
 pub(crate) const OVER_FLOOR: f64 = 1.25;
+/// The same for amplitude and distance alone, where `t_ref / t` reaches 1.108.
+const OVER_FLOOR_BY_AMPLITUDE: f64 = 1.11;
 
 /// Measures everything that needs no recording. `progress` is told what is being done.
 ///
@@ -45,19 +48,32 @@ pub fn simulated(progress: &mut dyn FnMut(&str)) -> Result<Vec<Figure>, Experime
     Ok(figures)
 }
 
-/// The worst of the cameras for each chain.
+/// The worst of the cameras for each chain, and of amplitude alone in each light.
 fn decays(cameras: &[HeldOut]) -> Result<Vec<Figure>, ExperimentError> {
-    let measured = cameras
-        .iter()
-        .map(|camera| decay::measure(camera, decay::Ambient::Same, &chains::ALL))
-        .collect::<Result<Vec<_>, _>>()?;
+    let measure = |ambient, chains: &[Chain]| {
+        let of_camera = |camera| decay::measure(camera, ambient, chains);
+        cameras.iter().map(of_camera).collect::<Result<Vec<_>, _>>()
+    };
+    let measured = measure(Ambient::Same, &chains::ALL)?;
     let figure = |(index, chain): (usize, &Chain)| {
         let cv = largest(measured.iter().map(|decays| decays[index].cv));
         let what = format!("reference decay over all integration times, CV, worst camera: {}", chain.name);
         let aim = if chain.is_ours() { Aim::AtMost(DECAY_CV) } else { Aim::None };
         Figure::new("distance", what, cv, Unit::Percent, aim)
     };
-    Ok(chains::ALL.iter().enumerate().map(figure).collect())
+    let mut figures: Vec<Figure> = chains::ALL.iter().enumerate().map(figure).collect();
+    for (ambient, most, least) in
+        [(Ambient::Same, 0.008, 0.8), (Ambient::Dark, 0.01, 0.8), (Ambient::Threefold, 0.01, 0.65)]
+    {
+        let measured = measure(ambient, &[chains::FROM_AMPLITUDE])?;
+        let worst = |value: fn(&Decay) -> f64| measured.iter().flatten().map(value);
+        let (cv, share) = (largest(worst(|decay| decay.cv)), smallest(worst(Decay::share)));
+        let what = format!("the same from amplitude and distance alone, {}", ambient.describe());
+        let positions = format!("{what}: share of the positions, the rest is flagged, worst camera");
+        figures.push(Figure::new("distance", what, cv, Unit::Percent, Aim::AtMost(most)));
+        figures.push(Figure::new("distance", positions, share, Unit::Percent, Aim::AtLeast(least)));
+    }
+    Ok(figures)
 }
 
 fn still_scenes(cameras: &[HeldOut]) -> Result<Vec<Figure>, ExperimentError> {
@@ -71,7 +87,8 @@ fn still_scenes(cameras: &[HeldOut]) -> Result<Vec<Figure>, ExperimentError> {
             "per-pixel CV over integration times beside the noise floor, worst camera: {}",
             chain.name
         );
-        let aim = if chain.is_ours() { Aim::AtMost(OVER_FLOOR) } else { Aim::None };
+        let most = if *chain == chains::FROM_AMPLITUDE { OVER_FLOOR_BY_AMPLITUDE } else { OVER_FLOOR };
+        let aim = if chain.is_ours() { Aim::AtMost(most) } else { Aim::None };
         figures.push(Figure::new("time", what, ratio, Unit::Ratio, aim));
         if chain.is_ours() {
             let valid = measured.iter().map(|still| still.chains[index].valid).fold(f64::INFINITY, f64::min);
@@ -112,6 +129,7 @@ fn ambient() -> Result<Vec<Figure>, ExperimentError> {
         ("linear", Aim::None),
         ("scalar", Aim::None),
         ("amplitude", Aim::None),
+        ("ambient", Aim::AtLeast(1.0)),
         ("pixel", Aim::AtLeast(3.0)),
         ("intensity", Aim::AtLeast(3.0)),
         ("phase_samples", Aim::AtLeast(3.0)),
@@ -126,6 +144,16 @@ fn ambient() -> Result<Vec<Figure>, ExperimentError> {
         let what = format!("valid of the unclipped pixels, same exposures, worst camera: {tier}");
         figures.push(Figure::new("response", what, valid, Unit::Percent, Aim::None));
     }
+    let beside_linear = CAMERAS.iter().map(|camera| {
+        let cv = |method: &str| {
+            let figure = found.iter().find(|figure| figure.camera == *camera && figure.method == method);
+            figure.map_or(f64::NAN, |figure| figure.median_cv)
+        };
+        cv("linear") / cv("ambient")
+    });
+    let what = "strong ambient light, per-pixel CV of linear over that of ambient, worst camera";
+    let least = Aim::AtLeast(1.0 / 1.1);
+    figures.push(Figure::new("response", what, smallest(beside_linear), Unit::Ratio, least));
     let noise = smallest(found.iter().map(|figure| figure.lut_median_cv / figure.floor_median_cv));
     let what = "the same for the true factors: what the noise alone allows";
     figures.push(Figure::new("response", what, noise, Unit::Ratio, Aim::None));

@@ -167,11 +167,7 @@ fn ambient_light(
             survey.push(&out.frame);
         }
     }
-    let found = survey.finish();
-    if std::env::var("LIGHT").is_ok() {
-        eprintln!("light {found:?} calibrated {}", response.ambient_dn_per_us);
-    }
-    Ok(found.ok())
+    Ok(survey.finish().ok())
 }
 
 /// The reference time is one of the sweep's in the middle, which every camera's table covers. The sweep is measured here

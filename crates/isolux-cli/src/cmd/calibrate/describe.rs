@@ -123,6 +123,12 @@ fn response_table(response: &Response) -> String {
             &tier.fit,
         );
     }
+    if let Some(tier) = &response.ambient {
+        // Only the well over the charge per amplitude is measured.
+        let full = format!("{:.0} DN of amplitude", tier.full_well_dn / tier.own_charge);
+        let [min_m, max_m] = tier.law.valid_distance_m;
+        row("ambient", full, Some(tier.softness), format!("{min_m:.2} to {max_m:.2} m"), &tier.fit);
+    }
     if let Some(tier) = &response.intensity {
         row(
             "intensity",

@@ -54,6 +54,8 @@ pub struct AmbientResponse {
 const MEAN_PHASE: f64 = std::f64::consts::FRAC_PI_8;
 /// Amplitudes above this share of the peak are not inverted: their noise would grow without limit.
 pub(super) const LARGEST_SHARE: f64 = 0.97;
+/// The same for amplitudes that a law over distance is fitted to: errors of the model grow there, too.
+const LARGEST_FITTED_SHARE: f64 = 0.9;
 /// Where the kept amplitude rises by less than this share of the linear one, its peak is reached.
 const LEAST_SLOPE: f64 = 0.02;
 /// Tables over the distance reach beyond the fitted distances by this factor.
@@ -124,7 +126,7 @@ impl AmbientResponse {
         let phase = phase(self.modulation_frequency_hz, distance_m);
         let well = self.well();
         let peak = well.amplitude_dn(Light { amplitude_dn: well.peak_dn(charge, phase), charge, phase });
-        if amplitude_dn > LARGEST_SHARE * peak {
+        if amplitude_dn > LARGEST_FITTED_SHARE * peak {
             return None;
         }
         self.linear_dn(amplitude_dn, charge, phase)
