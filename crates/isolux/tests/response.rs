@@ -159,7 +159,7 @@ fn best_takes_the_best_tier_that_recording_and_calibration_allow_and_never_the_m
     assert!(best(channels()).starts_with("response tier phase_samples: "));
     assert!(best(channels() - Channels::PHASE_SAMPLES).starts_with("response tier intensity: "));
     let amplitude_only = Channels::AMPLITUDE | Channels::INTEGRATION_TIME;
-    assert!(best(amplitude_only).starts_with("lut "));
+    assert!(best(amplitude_only).starts_with("linear "));
     let words = plan(&named, &calibration, amplitude_only).unwrap();
     assert!(words.starts_with("response tier amplitude: "), "{words}");
     let tier = |tier| Choice { response_tier: Some(tier), ..named };

@@ -38,7 +38,7 @@ enum Steps {
     TextbookBut(DistanceStep),
     /// None.
     Nothing,
-    /// The response, the wiener rule and the spline.
+    /// The best for the time, the wiener rule and the spline.
     Ours,
 }
 
@@ -108,7 +108,6 @@ impl Steps {
                 Choice { time: Some(TimeStep::None), distance: Some(DistanceStep::None), ..textbook }
             }
             Self::Ours => Choice {
-                time: Some(TimeStep::Response),
                 denoise: Some(DenoiseStep::Smooth(DenoiseRule::Wiener)),
                 distance: Some(DistanceStep::Spline),
                 ..Choice::default()

@@ -131,32 +131,54 @@ impl AmbientSurvey {
         let spatial = self.parts.iter().all(|part| part.spatial);
         self.parts.retain(|part| part.spatial == spatial);
         let pooled: Vec<Group> = self.parts.iter().flat_map(|part| part.groups.iter().copied()).collect();
-        let light = solve(&self.response, &pooled, None)?;
-        let course = self.course(light);
-        let Light { dn_per_us, error_dn_per_us, growth } = light;
-        Ok(AmbientLight { dn_per_us, error_dn_per_us, growth, course })
+        let whole = solve(&self.response, &pooled, None);
+        let parts = self.solved_parts(whole.as_ref().map_or(0.0, |light| light.growth));
+        match whole {
+            Ok(light) if !drifts(&parts, light.dn_per_us) => Ok(steady(light)),
+            // One light does not explain the noise of all parts, but each part has one.
+            Ok(_) | Err(AmbientUnknown::OtherNoise { .. }) if parts.len() >= LEAST_PARTS => {
+                Ok(drifting(&parts))
+            }
+            Ok(light) => Ok(steady(light)),
+            Err(unknown) => Err(unknown),
+        }
     }
 
-    /// The light part by part, where it drifts.
-    fn course(&self, mean: Light) -> Vec<(usize, f64)> {
-        let growth = Some(mean.growth);
-        let solved = self
-            .parts
-            .iter()
-            .filter_map(|part| Some((part.middle_frame, solve(&self.response, &part.groups, growth).ok()?)));
-        let solved: Vec<(usize, Light)> = solved.collect();
-        if solved.len() < LEAST_PARTS || solved.len() < self.parts.len() {
-            return Vec::new();
-        }
-        let count = solved.len() as f64;
-        let deviation = |light: &Light| light.dn_per_us - mean.dn_per_us;
-        let squares = solved.iter().map(|(_, light)| (deviation(light) / light.error_dn_per_us).powi(2));
-        let scatter = solved.iter().map(|(_, light)| deviation(light).powi(2)).sum::<f64>() / count;
-        let drifts = squares.sum::<f64>() > SIGNIFICANT * SIGNIFICANT * count
-            && scatter.sqrt() > RELEVANT * mean.dn_per_us;
-        let course = solved.iter().map(|(frame, light)| (*frame, light.dn_per_us));
-        if drifts { course.collect() } else { Vec::new() }
+    /// The light of each part; none where not all parts tell one.
+    fn solved_parts(&self, growth: f64) -> Vec<(usize, Light)> {
+        let solved =
+            |part: &Part| Some((part.middle_frame, solve(&self.response, &part.groups, Some(growth)).ok()?));
+        let parts: Option<Vec<_>> = self.parts.iter().map(solved).collect();
+        parts.unwrap_or_default()
     }
+}
+
+fn steady(Light { dn_per_us, error_dn_per_us, growth }: Light) -> AmbientLight {
+    AmbientLight { dn_per_us, error_dn_per_us, growth, course: Vec::new() }
+}
+
+fn drifting(parts: &[(usize, Light)]) -> AmbientLight {
+    let mean = |value: fn(&Light) -> f64| {
+        parts.iter().map(|(_, light)| value(light)).sum::<f64>() / parts.len() as f64
+    };
+    AmbientLight {
+        dn_per_us: mean(|light| light.dn_per_us),
+        error_dn_per_us: mean(|light| light.error_dn_per_us),
+        growth: mean(|light| light.growth),
+        course: parts.iter().map(|(frame, light)| (*frame, light.dn_per_us)).collect(),
+    }
+}
+
+/// Whether the lights of the parts differ from the light of the whole by more than chance, and by enough to matter.
+fn drifts(parts: &[(usize, Light)], whole: f64) -> bool {
+    if parts.len() < LEAST_PARTS {
+        return false;
+    }
+    let count = parts.len() as f64;
+    let deviation = |light: &Light| light.dn_per_us - whole;
+    let squares = parts.iter().map(|(_, light)| (deviation(light) / light.error_dn_per_us).powi(2));
+    let scatter = parts.iter().map(|(_, light)| deviation(light).powi(2)).sum::<f64>() / count;
+    squares.sum::<f64>() > SIGNIFICANT * SIGNIFICANT * count && scatter.sqrt() > RELEVANT * whole
 }
 
 /// Number of the ring of each pixel, from 1 at the centre.

@@ -88,7 +88,7 @@ fn default_step(planner: &mut Planner<'_>) -> TimeStep {
         (Method::Best, Some(_)) if response::measures_the_fill(planner) => TimeStep::Response,
         (Method::Best, Some(calibration)) => {
             let timed = planner.traits.channels.contains(Channels::INTEGRATION_TIME);
-            let referred = calibration.reference.integration_time_us.is_some();
+            let referred = calibration.terms.lut.is_some() || calibration.terms.response.is_some();
             if timed {
                 planner.notes.push(if referred { Note::FillUnknown } else { Note::NoTimeTerm });
             }
