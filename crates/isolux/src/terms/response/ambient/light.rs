@@ -98,6 +98,32 @@ mod tests {
         assert!((variance - (2.0 + 0.2 * 30.0)).abs() < 1e-6, "{variance}");
     }
 
+    /// Amplitude, charge and phase; W and p; read and shot noise; amplitude and variance by a NumPy implementation that
+    /// shares no code with this one.
+    type Value = ([f64; 3], [f64; 2], [f64; 2], [f64; 2]);
+
+    const VALUES: [Value; 6] = [
+        ([100.0, 2.0, 0.3], [2000.0, 5.5], [3.0, 0.1], [99.999_270_117_508_62, 12.999_558_739_123_72]),
+        ([600.0, 2.0, 0.3], [2000.0, 5.5], [3.0, 0.1], [534.692_649_401_956_9, 36.879_405_421_155_51]),
+        ([900.0, 1.5, 1.1], [2000.0, 4.2], [0.0, 0.02], [683.863_680_463_413_2, 4.675_553_966_712_092]),
+        ([300.0, 6.0, 2.9], [2500.0, 7.0], [60.0, 0.25], [265.307_830_120_665_3, 222.818_709_543_090_96]),
+        ([20.0, 90.0, 4.0], [2500.0, 7.0], [60.0, 0.25], [17.929_597_670_435_328, 240.790_908_722_956_74]),
+        ([450.0, 4.0, 0.785], [1900.0, 6.0], [1.0, 0.3], [239.882_505_761_217_46, 83.249_320_931_979_4]),
+    ];
+
+    #[test]
+    fn values_equal_those_of_an_independent_implementation() {
+        for ([amplitude_dn, charge, phase], [full_well_dn, softness], [read, shot], [amplitude, variance]) in
+            VALUES
+        {
+            let well = Well { full_well_dn, shape: SoftWell { softness }, clip: 1.0 };
+            let light = Light { amplitude_dn, charge, phase };
+            // Differences of charges cancel to a tenth of them: ten ulp; the powers add p of them.
+            assert!((well.amplitude_dn(light) / amplitude - 1.0).abs() < 1e-12, "{light:?}");
+            assert!((well.variance_dn2(light, read, shot) / variance - 1.0).abs() < 1e-12, "{light:?}");
+        }
+    }
+
     #[test]
     fn the_peak_is_the_largest_amplitude() {
         for charge in [1.5, 4.0, 60.0] {
