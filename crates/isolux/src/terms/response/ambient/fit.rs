@@ -4,79 +4,17 @@
 //! `ln V = ln V(…)`, with robust least squares. The amplitudes of two times at one distance differ from the ratio of
 //! the times only by saturation, which is what determines the well.
 
+use super::error::AmbientError;
 use super::light::{Light, Well};
 use super::model::{AmbientNoise, AmbientResponse, phase};
+use super::sample::TargetSample;
 use crate::numerics::bspline::Basis;
 use crate::numerics::nonlinear::{Fitted, least_squares};
+use crate::numerics::statistics::median;
 use crate::terms::check::{Check, Parameters};
 use crate::terms::response::well::SoftWell;
 use crate::terms::spline::{Harmonic, Law};
 use crate::terms::{FitQuality, Source, root_mean_square};
-
-/// What a flat target delivered at one position and integration time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TargetSample {
-    /// Integration time, µs.
-    pub integration_time_us: f64,
-    /// Mean distance in the window, m.
-    pub distance_m: f64,
-    /// Mean amplitude in the window, DN.
-    pub amplitude_dn: f64,
-    /// Standard error of the mean amplitude by the noise of its pixels, relative.
-    pub relative_error: f64,
-    /// Noise of the amplitude, where the position has repeated frames.
-    pub noise: Option<NoiseOfSample>,
-}
-
-/// Noise of the amplitudes of one position.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoiseOfSample {
-    /// Variance of one amplitude, DN².
-    pub variance_dn2: f64,
-    /// Number of differences that it was computed from.
-    pub differences: f64,
-}
-
-/// Why the tier is not determined.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum AmbientError {
-    /// Too few positions.
-    #[error("{found} positions at known times found, at least {expected} expected")]
-    TooFewSamples {
-        /// Number found.
-        found: usize,
-        /// Number that the fit needs.
-        expected: usize,
-    },
-    /// One time only.
-    #[error("one integration time found, at least 2 expected: saturation shows in how they differ")]
-    OneTime,
-    /// No position covers the reference.
-    #[error("no position at or around the reference distance of {reference_m} m")]
-    ReferenceOutside {
-        /// The reference distance, m.
-        reference_m: f64,
-    },
-    /// The amplitudes are all in proportion to the time.
-    #[error(
-        "no position is compressed by more than {:.1} %, so that the full well is not determined: record the target \
-         nearer, or at longer times, until it saturates", 100.0 * most
-    )]
-    NoCompression {
-        /// Largest compression found.
-        most: f64,
-    },
-    /// The model does not describe the amplitudes.
-    #[error(
-        "the amplitudes contradict the model of a saturating pixel by {:.1} %: is the target the same everywhere, does \
-         it face the camera, and is the ambient light steady?", 100.0 * residual
-    )]
-    Misfit {
-        /// Root mean square of the relative errors.
-        residual: f64,
-    },
-}
 
 /// Fewest positions of all times.
 const LEAST_SAMPLES: usize = 12;
@@ -226,11 +164,11 @@ impl Problem {
             (row.sample.amplitude_dn / row.sample.integration_time_us).ln() - row.ln_inverse_square
         };
         let mut rates: Vec<f64> = self.rows.iter().map(ln_rate).collect();
-        let ln_target = crate::numerics::statistics::median(&mut rates).unwrap_or(0.0);
+        let ln_target = median(&mut rates).unwrap_or(0.0);
         let noisy = || samples().filter_map(|s| s.noise.map(|noise| (noise.variance_dn2, s.amplitude_dn)));
         let read = noisy().map(|(variance, _)| 0.5 * variance).fold(f64::INFINITY, f64::min).min(1e12);
         let mut shots: Vec<f64> = noisy().map(|(variance, amplitude)| 0.5 * variance / amplitude).collect();
-        let shot = crate::numerics::statistics::median(&mut shots).unwrap_or(1.0);
+        let shot = median(&mut shots).unwrap_or(1.0);
         let mut start = vec![
             (wells * largest_dn).ln(),
             SOFTNESS[0],

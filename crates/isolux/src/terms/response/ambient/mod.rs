@@ -7,18 +7,21 @@
 //! contrast), K h(d) the amplitude per µs of the target of the calibration, h the law over distance, and B the charge
 //! per µs that the ambient light puts into a pixel that sees this target. Four numbers of the camera (W, p, c0, K) and
 //! one of the scene (B) then tell the fill of each pixel from amplitude and distance. B of another scene follows from
-//! the noise of its amplitudes, [`crate::ambient_light`].
+//! the noise of its amplitudes, [`AmbientSurvey`](crate::calibrate::AmbientSurvey).
 //!
 //! Amplitudes determine W/c0 only, not W and c0 each: a prior on c0 fixes this gauge, which no correction depends on.
 
+mod error;
 mod fit;
 mod light;
 mod model;
 mod planned;
+mod sample;
 
 #[cfg(test)]
 mod tests;
 
-pub use fit::{AmbientError, NoiseOfSample, TargetSample};
+pub use error::AmbientError;
 pub use model::{AmbientNoise, AmbientResponse};
 pub(crate) use planned::{PlannedAmbient, Recovered};
+pub use sample::{NoiseOfSample, TargetSample};
