@@ -8,7 +8,7 @@ use crate::frame::Shape;
 pub struct AmbientLight {
     /// At the centre of the image, over the whole recording.
     pub dn_per_us: f64,
-    /// Standard error by the noise that it was estimated from.
+    /// Standard error: of the noise that it was estimated from, of the model, and of a light that may be uneven.
     pub error_dn_per_us: f64,
     /// By how much it gains on the camera's own light towards the corners, which lobe and lens darken: the light grows
     /// by `exp(growth r²)`, r the distance from the centre of the image in half diagonals.
