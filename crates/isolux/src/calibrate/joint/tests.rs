@@ -71,6 +71,8 @@ fn observe(
         albedo.ln() + ln_time(usize::from(time)) + ln_law(d) + ln_profile(place) + EXPONENT * cosine.ln();
     Observation {
         surface,
+        // The errors are independent, whatever frames they are divided into.
+        frame: (random.0 >> 40) as u32 % 64,
         time,
         ln_amplitude: (truth + random.error()) as f32,
         distance_m: d as f32,

@@ -28,6 +28,8 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
     let mut warnings = Vec::new();
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
+    let first = joint::solve(&input.observations, &input.model)?;
+    input.expect(targets, &first.residuals);
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
@@ -40,7 +42,7 @@ pub(in crate::calibrate) fn fit(
     let fitted = Fitted {
         observations: &input.observations,
         fit: &fit,
-        held_out_residual: held_out(&input.observations, &input.frames, &fit.model, 0..FOLDS),
+        held_out_residual: held_out(&input.observations, &fit.model, 0..FOLDS),
         fitted_on: targets.iter().map(|target| target.source.clone()).collect(),
         warnings: warnings.iter().map(ToString::to_string).collect(),
     };
@@ -91,7 +93,7 @@ fn determined(
 fn smoothness(input: &JointInput) -> f64 {
     let tried = SMOOTHNESS.map(|smoothness| {
         let model = JointModel { smoothness, ..input.model };
-        let held_out = held_out(&input.observations, &input.frames, &model, 0..FOLDS);
+        let held_out = held_out(&input.observations, &model, 0..FOLDS);
         (smoothness, held_out.unwrap_or(f64::INFINITY))
     });
     tried
