@@ -29,8 +29,7 @@ use crate::terms::profile::Places;
 pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec<Option<f64>>) {
     let columns = &problem.columns;
     let seen = seen_cells(problem, &robust.weights);
-    let covariance = covariance(problem, robust);
-    let knowledge = Knowledge { columns, robust, system: system(columns, robust), covariance };
+    let knowledge = Knowledge::new(problem, robust);
     let fitted: Vec<Factor> =
         Factor::ALL.into_iter().filter(|&factor| !ranges(columns, factor).is_empty()).collect();
     let findings = fitted.iter().map(|&factor| knowledge.finding(factor, &fitted, &seen)).collect();
@@ -74,8 +73,8 @@ fn seen_cells(problem: &Problem, weights: &[f64]) -> Vec<bool> {
     seen
 }
 
-struct Knowledge<'a> {
-    columns: &'a Columns,
+pub(super) struct Knowledge<'a> {
+    pub(super) columns: &'a Columns,
     robust: &'a Robust,
     /// `G + σ² P`.
     system: DMatrix<f64>,
@@ -83,7 +82,12 @@ struct Knowledge<'a> {
     covariance: Option<DMatrix<f64>>,
 }
 
-impl Knowledge<'_> {
+impl<'a> Knowledge<'a> {
+    pub(super) fn new(problem: &'a Problem, robust: &'a Robust) -> Self {
+        let columns = &problem.columns;
+        Self { columns, robust, system: system(columns, robust), covariance: covariance(problem, robust) }
+    }
+
     fn finding(&self, factor: Factor, fitted: &[Factor], seen: &[bool]) -> Finding {
         let others: Vec<Factor> = fitted.iter().copied().filter(|other| *other != factor).collect();
         let error = |with: &[Factor]| self.error(factor, with, seen);
@@ -122,7 +126,7 @@ impl Knowledge<'_> {
     }
 
     /// Variances of linear functions of the coefficients, all factors unknown.
-    fn posterior(&self, functionals: &[DVector<f64>]) -> Vec<f64> {
+    pub(super) fn posterior(&self, functionals: &[DVector<f64>]) -> Vec<f64> {
         let Some(covariance) = &self.covariance else { return vec![f64::INFINITY] };
         functionals.iter().map(|functional| functional.dot(&(covariance * functional))).collect()
     }
@@ -142,7 +146,7 @@ impl Knowledge<'_> {
     }
 
     /// The points of the factor's curve, less that of the gauge.
-    fn functionals(&self, factor: Factor, seen: &[bool]) -> Vec<DVector<f64>> {
+    pub(super) fn functionals(&self, factor: Factor, seen: &[bool]) -> Vec<DVector<f64>> {
         let columns = self.columns;
         let model = &columns.model;
         let difference = |row: &Row, gauge: &Row| dense(columns.len, row) - dense(columns.len, gauge);

@@ -19,6 +19,8 @@
 
 mod columns;
 mod conclusion;
+#[cfg(test)]
+mod coverage_tests;
 mod determine;
 mod factor;
 mod finding;

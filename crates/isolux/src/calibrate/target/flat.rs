@@ -152,3 +152,94 @@ fn first(pixels: &[Pixel]) -> Option<Vector3<f64>> {
     }
     normal.cholesky().map(|factor| factor.solve(&moment))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Shape;
+    use crate::numerics::hash::splitmix64;
+
+    const SHAPE: Shape = Shape::new(60, 80);
+    const INTRINSICS: Intrinsics = Intrinsics { fx: 90.0, fy: 90.0, cx: 39.5, cy: 29.5 };
+    /// Standard deviation of a distance: a phase of a signal-to-noise ratio of 10 at 20 MHz.
+    const NOISE_M: f64 = 0.12;
+
+    /// Twelve uniform numbers make a normal one.
+    fn normal(index: usize, seed: u64) -> f64 {
+        let uniform = |part: u64| {
+            (splitmix64(seed << 32 | (12 * index as u64 + part)) >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(uniform).sum::<f64>() - 6.0
+    }
+
+    /// A frame whose label 1 is everywhere, at radial distances `of` the pixels' rays.
+    fn frame(of: impl Fn(&Vector3<f64>) -> f64, noise_m: f64, seed: u64) -> (Frame, Plane<u8>) {
+        let mut frame = Frame::new(SHAPE);
+        frame.amplitude.fill(100.0);
+        let distance = |row: usize, column: usize| {
+            let ray = Vector3::from(INTRINSICS.ray(row as f64, column as f64));
+            (of(&ray) + noise_m * normal(row * SHAPE.width + column, seed)) as f32
+        };
+        frame.distance_m = Some(Plane::from_fn(SHAPE, distance));
+        frame.flag_amplitude(None);
+        (frame, Plane::filled(SHAPE, 1))
+    }
+
+    /// All that do not overlap: so many that chance hardly ever takes them off their plane.
+    fn windows() -> Vec<(usize, usize)> {
+        let rows = (0..SHAPE.height / PATCH_PX).map(|row| row * PATCH_PX);
+        rows.flat_map(|row| (0..SHAPE.width / PATCH_PX).map(move |column| (row, column * PATCH_PX))).collect()
+    }
+
+    fn window() -> WindowMedians {
+        WindowMedians {
+            frame: 0,
+            label: 1,
+            time_us: 1000.0,
+            ln_amplitude: 100f32.ln(),
+            distance_m: f32::NAN,
+            pixel: [12, 60],
+            cosine: f32::NAN,
+            scatter: 0.1,
+            pixels: 25,
+        }
+    }
+
+    #[test]
+    fn the_plane_of_noisy_distances_has_no_bias() {
+        for inverse in [Vector3::new(0.0, 0.0, 0.5), Vector3::new(0.4, -0.3, 0.5)] {
+            let (mut found_m, mut found_cosine) = (0.0, 0.0);
+            for seed in 0..10 {
+                let of = |ray: &Vector3<f64>| radial(&inverse, ray).unwrap();
+                let (frame, target) = frame(of, NOISE_M, seed);
+                let plane = FlatLabel::fit(&frame, &target, 1, &windows(), &INTRINSICS).unwrap();
+                let mut window = window();
+                assert!(plane.place(&mut window));
+                found_m += 0.1 * f64::from(window.distance_m);
+                found_cosine += 0.1 * f64::from(window.cosine);
+            }
+            let ray = Vector3::from(INTRINSICS.ray(12.0, 60.0));
+            let distance_m = radial(&inverse, &ray).unwrap();
+            let cosine = inverse.dot(&ray) / (inverse.norm() * ray.norm());
+            // 4800 pixels, three unknowns, ten frames: σ √(3/48000), and four of these. Slopes: the image spans half a
+            // radian to either side, so that theirs is √3 / 0.4 times as large, in units of the distance.
+            let error_m = 4.0 * NOISE_M * (3.0f64 / 48_000.0).sqrt();
+            assert!((found_m - distance_m).abs() < error_m, "{found_m} {distance_m}");
+            let error = error_m * 3f64.sqrt() / (0.4 * distance_m);
+            assert!((found_cosine - cosine).abs() < error, "{found_cosine} {cosine}");
+        }
+    }
+
+    #[test]
+    fn what_is_bent_has_no_plane() {
+        // A ball of 0.5 m radius at 1.5 m.
+        let ball = |ray: &Vector3<f64>| {
+            let unit = ray.normalize();
+            let along = 1.5 * unit[2];
+            along - (along * along - 1.5 * 1.5 + 0.25).max(0.0).sqrt()
+        };
+        let (bent, target) = frame(ball, 0.002, 1);
+        assert!(FlatLabel::fit(&bent, &target, 1, &windows(), &INTRINSICS).is_none());
+        assert!(FlatLabel::fit(&bent, &target, 2, &windows(), &INTRINSICS).is_none(), "not in sight");
+    }
+}

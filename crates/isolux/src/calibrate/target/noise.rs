@@ -88,3 +88,77 @@ fn cell(windows: &[&WindowMedians]) -> Option<NoiseCell> {
         differences: MAD_EFFICIENCY * pixels,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::hash::splitmix64;
+    use crate::numerics::statistics::{SIGMA_PER_MAD, median_absolute_deviation};
+
+    const SIGMA_DN: f64 = 10.0;
+    const PIXELS: usize = 25;
+
+    /// Twelve uniform numbers make a normal one.
+    fn normal(state: &mut u64) -> f64 {
+        let mut uniform = || {
+            *state += 1;
+            (splitmix64(*state) >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    /// A window of Rician amplitudes.
+    fn window(amplitude_dn: f64, state: &mut u64) -> WindowMedians {
+        let mut pixel = || (amplitude_dn + SIGMA_DN * normal(state)).hypot(SIGMA_DN * normal(state)).ln();
+        let mut logs: Vec<f64> = (0..PIXELS).map(|_| pixel()).collect();
+        let ln_amplitude = median(&mut logs).unwrap() as f32;
+        let scatter = (SIGMA_PER_MAD * median_absolute_deviation(&mut logs).unwrap()) as f32;
+        let (time_us, distance_m, cosine) = (1000.0, 1.0, 1.0);
+        let pixels = PIXELS as u8;
+        WindowMedians {
+            frame: 0,
+            label: 1,
+            time_us,
+            ln_amplitude,
+            distance_m,
+            pixel: [2; 2],
+            cosine,
+            scatter,
+            pixels,
+        }
+    }
+
+    #[test]
+    fn windows_of_any_brightness_come_out_right_on_average() {
+        const COUNT: usize = 4000;
+        let mut state = 1;
+        let levels = [60.0, 120.0, 1000.0];
+        let windows: Vec<(f64, WindowMedians)> =
+            (0..COUNT).flat_map(|_| levels).map(|level| (level, window(level, &mut state))).collect();
+        let noise = WindowNoise::fit(windows.iter().map(|(_, window)| window));
+        for level in levels {
+            let mine = || windows.iter().filter(|(of, _)| *of == level).map(|(_, window)| window);
+            let effect = noise.effect(mine().next().unwrap(), level.ln());
+            let mean = mine().map(|window| f64::from(window.ln_amplitude)).sum::<f64>() / COUNT as f64;
+            let relative = SIGMA_DN / level;
+            // Four standard errors of the mean of medians; a fifth of the bias, because the noise is known to a tenth,
+            // and orders beyond the second are left out.
+            let tolerance = 4.0 * 1.25 * relative / ((PIXELS * COUNT) as f64).sqrt() + 0.1 * relative.powi(2);
+            assert!((mean - level.ln() - effect.bias).abs() < tolerance, "{level}: {mean} {effect:?}");
+            assert!(relative < 0.1 || mean - level.ln() > 2.0 * tolerance, "{level}: nothing to correct");
+        }
+    }
+
+    #[test]
+    fn a_window_that_is_expected_to_be_faint_does_not_count_however_bright_it_is() {
+        let noise = WindowNoise {
+            by_amplitude: AmplitudeNoise { read_variance_dn2: 100.0, ..AmplitudeNoise::default() },
+        };
+        let window = window(49.0, &mut 3);
+        assert_eq!(noise.effect(&window, 49f64.ln()).weight, 0.0);
+        assert!(noise.effect(&window, 51f64.ln()).weight > 0.0);
+        // Without noise, all count alike.
+        let none = WindowNoise::default().effect(&window, 0.0);
+        assert_eq!(none, Effect { weight: 1.0, bias: 0.0 });
+    }
+}
