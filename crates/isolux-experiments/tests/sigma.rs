@@ -32,10 +32,11 @@ fn cases(scene: &'static str) -> Vec<(String, SigmaCase)> {
 fn print(name: &str, found: &SigmaFigures) {
     let strata = found.strata.iter().map(|(share, count)| format!("{:.1} ({count})", 100.0 * share));
     println!(
-        "| {name} | {:.1} | {:.1} | {:+.2} | {:.0} | {} |",
+        "| {name} | {:.1} | {:.1} | {:+.2} | {:.2} | {:.0} | {} |",
         100.0 * found.within_one_sigma,
         100.0 * found.ence,
         found.bias,
+        100.0 * found.beyond_three_sigma.0,
         100.0 * found.counted_share,
         strata.collect::<Vec<_>>().join(" | ")
     );
@@ -45,7 +46,9 @@ fn print(name: &str, found: &SigmaFigures) {
 #[ignore = "minutes; prints the figures"]
 fn all_figures() {
     let strata = SNR_FROM.map(|from| format!("from {from}")).join(" | ");
-    println!("| camera, scene, case | within 1σ, % | ENCE, % | bias, σ | counted, % | {strata} |");
+    println!(
+        "| camera, scene, case | within 1σ, % | ENCE, % | bias, σ | beyond 3σ, % | counted, % | {strata} |"
+    );
     for seed in 101..=106 {
         let camera = HeldOut::new(seed).unwrap();
         for scene in ["patches", "office-desk", "cups"] {

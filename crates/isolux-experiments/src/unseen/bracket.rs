@@ -8,7 +8,7 @@ use isolux_camera::{Scene, Simulation};
 
 use super::held_out::{HeldOut, MEASURED};
 use super::noise_free::without_noise;
-use super::sigma::{Collector, SigmaCase, SigmaFigures, plan, true_snr};
+use super::sigma::{Collector, SigmaCase, SigmaFigures, like_plan, plan, true_snr};
 use crate::error::ExperimentError;
 use crate::measure::for_each;
 
@@ -85,6 +85,7 @@ pub fn measure(camera: &HeldOut, case: &BracketCase) -> Result<BracketFigures, E
     let (noisy_plan, mut merge) = noisy_plan.bracket()?;
     let mut merge_clean = merge.clone();
     let (mut noisy_frames, mut clean_frames) = (noisy_plan.stream(), clean_plan.stream());
+    let mut like_frames = like_plan(camera, &of_frames)?.stream();
     let new = || Standardized::new(simulated.shape());
     let (mut clean, mut merged, mut merged_clean) = (new(), new(), new());
     let mut collector = Collector::default();
@@ -93,7 +94,8 @@ pub fn measure(camera: &HeldOut, case: &BracketCase) -> Result<BracketFigures, E
     for_each(&simulated, |index, simulated_frame| {
         let frame = &simulated_frame.frame;
         let noisy = noisy_frames.push(frame)?;
-        clean.clone_from(clean_frames.push(&without_noise(simulated_frame, &camera.model))?);
+        let noise_free = without_noise(simulated_frame, &camera.model);
+        clean.clone_from(clean_frames.push(&noise_free)?);
         for (pixel, squares) in squares.iter_mut().enumerate() {
             squares.times.resize(case.times_us.len(), 0.0);
             squares.times[index % case.times_us.len()] += error(noisy, &clean, pixel).powi(2);
@@ -108,7 +110,11 @@ pub fn measure(camera: &HeldOut, case: &BracketCase) -> Result<BracketFigures, E
         }
         merge.finish(&mut merged);
         merge_clean.finish(&mut merged_clean);
-        collector.push(&merged, &merged_clean, |pixel| true_snr(simulated_frame, &camera.model, pixel));
+        // What groups are formed by need not be the merged σ, but must not know the errors: that of the longest time.
+        if let Some(like) = &like_frames.push(&noise_free)?.sigma {
+            collector
+                .push(&merged, &merged_clean, like, |pixel| true_snr(simulated_frame, &camera.model, pixel));
+        }
         for (pixel, squares) in squares.iter_mut().enumerate() {
             squares.merged += error(&merged, &merged_clean, pixel).powi(2);
             squares.brackets += 1;

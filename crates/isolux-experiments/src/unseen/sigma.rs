@@ -4,7 +4,7 @@ use isolux::calibrate::NoiseSurvey;
 use isolux::evaluate::SigmaTally;
 use isolux::standardize::{DenoiseStep, DistanceStep, SigmaStep, SpecularStep};
 use isolux::terms::NoiseModel;
-use isolux::{Channels, Choice, DenoiseRule, PixelFlags, RecordingTraits, Standardized, Standardizer};
+use isolux::{Channels, Choice, DenoiseRule, PixelFlags, Plane, RecordingTraits, Standardized, Standardizer};
 use isolux_camera::{CameraModel, Scene, SimulatedFrame, Simulation};
 
 use super::held_out::{HeldOut, MEASURED};
@@ -61,6 +61,9 @@ pub struct SigmaFigures {
     pub strata: [(f64, u64); SNR_FROM.len()],
     /// Mean error over root mean square of σ: the bias that is left.
     pub bias: f64,
+    /// Share of the errors beyond three σ, 0..=1: of all, and from each of [`SNR_FROM`] to the next. Normal errors:
+    /// 0.27 %.
+    pub beyond_three_sigma: (f64, [f64; SNR_FROM.len()]),
 }
 
 /// Collects errors.
@@ -74,9 +77,15 @@ pub(super) struct Collector {
 }
 
 impl Collector {
-    /// Takes in a frame: its values beside those without noise. `snr` tells the ratio of a pixel, NaN where it is not
-    /// to count.
-    pub(super) fn push(&mut self, noisy: &Standardized, clean: &Standardized, snr: impl Fn(usize) -> f64) {
+    /// Takes in a frame: its values beside those without noise. `like` is the σ that would be predicted without noise,
+    /// by which errors are grouped. `snr` tells the ratio of a pixel, NaN where it is not to count.
+    pub(super) fn push(
+        &mut self,
+        noisy: &Standardized,
+        clean: &Standardized,
+        like: &Plane<f32>,
+        snr: impl Fn(usize) -> f64,
+    ) {
         let Some(sigma) = &noisy.sigma else { return };
         for (index, flags) in noisy.flags.values().iter().enumerate() {
             if flags.intersects(PixelFlags::INVALID | PixelFlags::SATURATED) {
@@ -85,12 +94,12 @@ impl Collector {
             self.usable += 1;
             let error =
                 f64::from(noisy.amplitude.values()[index]) - f64::from(clean.amplitude.values()[index]);
-            let sigma = f64::from(sigma.values()[index]);
+            let [sigma, like] = [sigma, like].map(|plane| f64::from(plane.values()[index]));
             let ratio = snr(index);
             let stratum = SNR_FROM.iter().rposition(|from| ratio >= *from);
             if let Some(stratum) = stratum.filter(|_| error.is_finite() && sigma.is_finite()) {
-                self.all.push(error, sigma);
-                self.strata[stratum].push(error, sigma);
+                self.all.push(error, sigma, like);
+                self.strata[stratum].push(error, sigma, like);
                 self.error += error;
                 self.variance += sigma * sigma;
             }
@@ -99,6 +108,7 @@ impl Collector {
 
     pub(super) fn finish(&self) -> SigmaFigures {
         let count = self.all.errors() as f64;
+        let beyond = |tally: &SigmaTally| tally.beyond_three_sigma().unwrap_or(f64::NAN);
         SigmaFigures {
             within_one_sigma: self.all.within_one_sigma().unwrap_or(f64::NAN),
             ence: self.all.ence().unwrap_or(f64::NAN),
@@ -109,6 +119,7 @@ impl Collector {
                 .each_ref()
                 .map(|tally| (tally.within_one_sigma().unwrap_or(f64::NAN), tally.errors())),
             bias: self.error / count / (self.variance / count).sqrt(),
+            beyond_three_sigma: (beyond(&self.all), self.strata.each_ref().map(beyond)),
         }
     }
 }
@@ -147,6 +158,12 @@ pub(super) fn plan(
     Ok(Standardizer::plan(&choice, Some(&camera.calibration), traits)?)
 }
 
+/// The plan that predicts σ of frames without noise.
+pub(super) fn like_plan(camera: &HeldOut, case: &SigmaCase) -> Result<Standardizer, ExperimentError> {
+    // Without noise, that of the distance cannot be estimated, and there is nothing to denoise.
+    plan(camera, &SigmaCase { denoise: None, frequency: true, ..*case }, None, true)
+}
+
 /// The noise that the frames themselves show.
 fn survey(simulated: &Simulation) -> Result<Option<NoiseModel>, ExperimentError> {
     let mut survey = NoiseSurvey::new();
@@ -170,6 +187,7 @@ pub fn measure(camera: &HeldOut, case: &SigmaCase) -> Result<SigmaFigures, Exper
     let noise = if case.noise_from_scene { survey(&simulated)? } else { None };
     let mut noisy = plan(camera, case, noise, true)?.stream();
     let mut clean = plan(camera, case, None, false)?.stream();
+    let mut like = like_plan(camera, case)?.stream();
     let mut collector = Collector::default();
     let mut last = None;
     for_each(&simulated, |index, simulated_frame| {
@@ -179,8 +197,11 @@ pub fn measure(camera: &HeldOut, case: &SigmaCase) -> Result<SigmaFigures, Exper
             noisy.reset();
         }
         let noisy = noisy.push(frame)?;
-        let clean = clean.push(&without_noise(simulated_frame, &camera.model))?;
-        collector.push(noisy, clean, |index| true_snr(simulated_frame, &camera.model, index));
+        let noise_free = without_noise(simulated_frame, &camera.model);
+        let clean = clean.push(&noise_free)?;
+        if let Some(like) = &like.push(&noise_free)?.sigma {
+            collector.push(noisy, clean, like, |index| true_snr(simulated_frame, &camera.model, index));
+        }
         Ok(())
     })?;
     Ok(collector.finish())

@@ -14,20 +14,16 @@ const LARGEST_CELL_ERROR: f64 = 0.05;
 pub(super) const FOLDS: u32 = 5;
 
 /// Root mean square of the relative error on the frames of these `folds`, each left out in turn; `None` with too
-/// few frames. `frames` holds the frame number of each observation.
-pub(super) fn held_out(
-    observations: &[Observation],
-    frames: &[u32],
-    model: &JointModel,
-    folds: Range<u32>,
-) -> Option<f64> {
-    if frames.iter().max().map_or(0, |last| last + 1) < FOLDS {
+/// few frames.
+pub(super) fn held_out(observations: &[Observation], model: &JointModel, folds: Range<u32>) -> Option<f64> {
+    if observations.iter().map(|observation| observation.frame + 1).max().unwrap_or(0) < FOLDS {
         return None;
     }
     let mut squares = (0.0, 0.0);
     for fold in folds {
         let mut training = observations.to_vec();
-        let tested = |index: &usize| frames[*index] % FOLDS == fold && observations[*index].weight > 0.0;
+        let tested =
+            |index: &usize| observations[*index].frame % FOLDS == fold && observations[*index].weight > 0.0;
         let tested: Vec<usize> = (0..training.len()).filter(tested).collect();
         tested.iter().for_each(|&index| training[index].weight = 0.0);
         let Ok(fit) = joint::solve(&training, model) else { continue };

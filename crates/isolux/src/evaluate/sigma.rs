@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::frame::{IntegrationTime, PixelFlags, Plane};
+use crate::frame::{IntegrationTime, PixelFlags, Plane, Shape};
+use crate::numerics::statistics::median;
 
 use super::fraction::fraction;
 use super::input::Times;
@@ -17,7 +18,8 @@ pub struct SigmaCoverage {
     pub within_one_sigma: f64,
     /// Expected normalized calibration error, dimensionless: the mean over ten groups of like σ of the difference
     /// between the root mean square of σ and that of the errors, over the former (Levi, Gispan, Giladi and Fetaya,
-    /// "Evaluating and calibrating uncertainty prediction in regression tasks", Sensors 22, 2022).
+    /// "Evaluating and calibrating uncertainty prediction in regression tasks", Sensors 22, 2022). The groups are
+    /// formed by the σ of neighbouring pixels.
     pub ence: f64,
     /// Errors that entered.
     pub errors: u64,
@@ -42,8 +44,9 @@ pub struct CoverageStratum {
 #[derive(Clone, Debug, Default)]
 pub struct SigmaTally {
     within: u64,
+    beyond: u64,
     errors: u64,
-    /// By the upper bits of σ: eight groups an octave, to be joined.
+    /// By the upper bits of the σ that the groups are formed by: eight groups an octave, to be joined.
     groups: BTreeMap<u32, Group>,
 }
 
@@ -59,14 +62,18 @@ impl SigmaTally {
     const GROUPS: u64 = 10;
     const SHIFT: u32 = 20;
 
-    /// Takes one error in. A σ that is not positive and finite, or an error that is not finite, does not count.
-    pub fn push(&mut self, error: f64, sigma: f64) {
-        if !(sigma > 0.0 && sigma.is_finite() && error.is_finite()) {
+    /// Takes one error in, all in one unit. `like` is the σ by which its group is chosen. It must not depend on the
+    /// error: σ follows from the noisy value, and groups of it would gather errors that made their own σ large.
+    /// A σ that is not positive and finite, or an error that is not finite, does not count.
+    pub fn push(&mut self, error: f64, sigma: f64, like: f64) {
+        let usable = |sigma: f64| sigma > 0.0 && sigma.is_finite();
+        if !(usable(sigma) && usable(like) && error.is_finite()) {
             return;
         }
         self.errors += 1;
         self.within += u64::from(error.abs() <= sigma);
-        let group = self.groups.entry((sigma as f32).to_bits() >> Self::SHIFT).or_default();
+        self.beyond += u64::from(error.abs() > 3.0 * sigma);
+        let group = self.groups.entry((like as f32).to_bits() >> Self::SHIFT).or_default();
         group.count += 1;
         group.variance += sigma * sigma;
         group.squares += error * error;
@@ -82,6 +89,12 @@ impl SigmaTally {
     #[must_use]
     pub fn within_one_sigma(&self) -> Option<f64> {
         (self.errors > 0).then(|| fraction(self.within, self.errors))
+    }
+
+    /// Share of the errors beyond three σ, 0..=1: 0.27 % of normal errors.
+    #[must_use]
+    pub fn beyond_three_sigma(&self) -> Option<f64> {
+        (self.errors > 0).then(|| fraction(self.beyond, self.errors))
     }
 
     /// Expected normalized calibration error over ten groups of like number.
@@ -142,7 +155,9 @@ impl CoverageMeter {
     ) {
         self.seen = true;
         let ratio = self.same_time_ratio;
+        let shape = sigma.shape();
         for (index, (pixel, &value)) in self.pixels.iter_mut().zip(usable).enumerate() {
+            let like = sigma_around(sigma.values(), shape, index);
             let (value, sigma) = (f64::from(value), f64::from(sigma.values()[index]));
             let time_us = times.at(index);
             let limited = flags.values()[index].contains(PixelFlags::SPECULAR);
@@ -158,7 +173,7 @@ impl CoverageMeter {
                 let error = value - pixel.sum / count;
                 // The error of the value alone, had the mean none.
                 let error = error * sigma / (sigma * sigma + of_mean).sqrt();
-                self.tally.push(error, sigma);
+                self.tally.push(error, sigma, like.unwrap_or(sigma));
                 pixel.within += u32::from(error.abs() <= sigma);
                 pixel.errors += 1;
             }
@@ -194,10 +209,26 @@ impl CoverageMeter {
     }
 }
 
+/// Median σ of the eight neighbours: it says how noisy the place is and knows nothing of the pixel's own error. `None`
+/// where no neighbour has one.
+fn sigma_around(sigma: &[f32], shape: Shape, index: usize) -> Option<f64> {
+    let (row, column) = shape.place(index);
+    let (mut around, mut count) = ([0.0; 8], 0);
+    for near_row in row.saturating_sub(1)..(row + 2).min(shape.height) {
+        for near_column in column.saturating_sub(1)..(column + 2).min(shape.width) {
+            let near = f64::from(sigma[near_row * shape.width + near_column]);
+            if (near_row, near_column) != (row, column) && near > 0.0 && near.is_finite() {
+                around[count] = near;
+                count += 1;
+            }
+        }
+    }
+    median(&mut around[..count])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Shape;
 
     /// Sums of twelve uniforms: variance 1, nearly normal.
     fn normal(state: &mut u64) -> f64 {
@@ -215,7 +246,7 @@ mod tests {
             let mut tally = SigmaTally::default();
             for i in 0..count {
                 let sigma = 1.0 + f64::from(i % 100) / 10.0;
-                tally.push(sigma * normal(&mut state), factor * sigma);
+                tally.push(sigma * normal(&mut state), factor * sigma, sigma);
             }
             // Standard errors: 0.23 % of a share, and 0.35 % of a deviation times √10 in each group; the sum of
             // uniforms differs from the normal law by 0.4 %.
@@ -223,6 +254,21 @@ mod tests {
             assert!((tally.ence().unwrap() - ence).abs() < 0.04, "{:?}", tally.ence());
         }
         assert_eq!(SigmaTally::default().ence(), None);
+    }
+
+    #[test]
+    fn groups_that_do_not_know_the_errors_show_no_error_of_right_sigmas() {
+        // σ is a fifth of the noisy value, as after d²: errors of a fifth make σ wrong by as much.
+        let (mut state, mut by_truth, mut by_own) = (7, SigmaTally::default(), SigmaTally::default());
+        for i in 0..40_000 {
+            let truth = 1.0 + f64::from(i % 100) / 10.0;
+            let value = truth * (1.0 + 0.2 * normal(&mut state));
+            by_truth.push(value - truth, 0.2 * value, 0.2 * truth);
+            by_own.push(value - truth, 0.2 * value, 0.2 * value);
+        }
+        // The mean of σ² is too large by 0.2², and of ten groups each has 1.1 % of statistical error.
+        let [by_truth, by_own] = [by_truth, by_own].map(|tally| tally.ence().unwrap());
+        assert!(by_truth < 0.02 + 2.0 * 0.011 && by_own > 1.5 * by_truth, "{by_truth} {by_own}");
     }
 
     #[test]

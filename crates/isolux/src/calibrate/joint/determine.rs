@@ -2,13 +2,15 @@
 //!
 //! Three questions are asked about each factor. They are about its curve (ln h at 33 distances, ln v in the
 //! observed cells of the image, s at every time, the effect of k at 60°), not about its coefficients:
-//! - What would its standard error be if all other factors were known? If it is too large, the factor was not
-//!   observed.
+//! - What would its standard error be if all other factors were known and all errors independent? If it is too large,
+//!   the factor was not observed.
 //! - By what factor does the error grow because the others are unknown too (the square root of the variance
 //!   inflation)? If it grows too much, the factor is confounded with them, and small errors of the model would grow
 //!   as much.
 //! - How much do ln d and ln cosθ vary beyond what the other factors explain? Both are measured with errors of a
 //!   few percent. If they vary by little more than these errors, the fitted slope is too small.
+//!
+//! The standard errors that are reported account for errors that the observations of a frame share.
 
 use std::ops::Range;
 
@@ -20,13 +22,14 @@ use super::finding::Finding;
 use super::problem::Problem;
 use super::refusal::Refusal;
 use super::robust::{Robust, factorize};
+use super::shared_errors;
 use crate::terms::profile::Places;
 
 /// The findings on every factor that was fitted, and the standard error of ln v in each cell that was seen.
 pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec<Option<f64>>) {
     let columns = &problem.columns;
     let seen = seen_cells(problem, &robust.weights);
-    let knowledge = Knowledge { columns, robust, system: system(columns, robust) };
+    let knowledge = Knowledge::new(problem, robust);
     let fitted: Vec<Factor> =
         Factor::ALL.into_iter().filter(|&factor| !ranges(columns, factor).is_empty()).collect();
     let findings = fitted.iter().map(|&factor| knowledge.finding(factor, &fitted, &seen)).collect();
@@ -36,6 +39,15 @@ pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec
 
 fn system(columns: &Columns, robust: &Robust) -> DMatrix<f64> {
     &robust.normal.gram + columns.prior() * (robust.sigma * robust.sigma)
+}
+
+/// Covariance of all coefficients; of independent errors where the frames are too few to tell what they share.
+fn covariance(problem: &Problem, robust: &Robust) -> Option<DMatrix<f64>> {
+    let independent = || {
+        let factor = factorize(&robust.normal.gram, &problem.columns.prior(), robust.sigma)?;
+        Some(factor.inverse() * (robust.sigma * robust.sigma))
+    };
+    shared_errors::covariance(problem, robust).or_else(independent)
 }
 
 /// Columns of a factor.
@@ -61,20 +73,27 @@ fn seen_cells(problem: &Problem, weights: &[f64]) -> Vec<bool> {
     seen
 }
 
-struct Knowledge<'a> {
-    columns: &'a Columns,
+pub(super) struct Knowledge<'a> {
+    pub(super) columns: &'a Columns,
     robust: &'a Robust,
     /// `G + σ² P`.
     system: DMatrix<f64>,
+    /// Of all coefficients.
+    covariance: Option<DMatrix<f64>>,
 }
 
-impl Knowledge<'_> {
+impl<'a> Knowledge<'a> {
+    pub(super) fn new(problem: &'a Problem, robust: &'a Robust) -> Self {
+        let columns = &problem.columns;
+        Self { columns, robust, system: system(columns, robust), covariance: covariance(problem, robust) }
+    }
+
     fn finding(&self, factor: Factor, fitted: &[Factor], seen: &[bool]) -> Finding {
         let others: Vec<Factor> = fitted.iter().copied().filter(|other| *other != factor).collect();
         let error = |with: &[Factor]| self.error(factor, with, seen);
         let alone = error(&[]);
-        let standard_error = error(&others);
-        let inflation = (standard_error / alone).max(1.0);
+        let inflation = (error(&others) / alone).max(1.0);
+        let standard_error = root_mean(&self.posterior(&self.functionals(factor, seen)));
         let free_spread = factor.least_spread().map(|_| self.free_spread(factor, &others));
         let narrow = |spread: Option<f64>| {
             factor.least_spread().zip(spread).is_some_and(|(least, spread)| spread < least)
@@ -101,11 +120,15 @@ impl Knowledge<'_> {
         Finding { factor, standard_error, inflation, free_spread, refusal }
     }
 
-    /// Root mean square standard error of the factor's curve when it and `with` are unknown.
+    /// Root mean square standard error of the factor's curve when it and `with` are unknown, of independent errors.
     fn error(&self, factor: Factor, with: &[Factor], seen: &[bool]) -> f64 {
-        let variances = self.variances(&self.functionals(factor, seen), factor, with);
-        let sum: f64 = variances.iter().sum();
-        (sum / variances.len().max(1) as f64).sqrt()
+        root_mean(&self.variances(&self.functionals(factor, seen), factor, with))
+    }
+
+    /// Variances of linear functions of the coefficients, all factors unknown.
+    pub(super) fn posterior(&self, functionals: &[DVector<f64>]) -> Vec<f64> {
+        let Some(covariance) = &self.covariance else { return vec![f64::INFINITY] };
+        functionals.iter().map(|functional| functional.dot(&(covariance * functional))).collect()
     }
 
     /// Variances of linear functions of the factor's coefficients.
@@ -123,7 +146,7 @@ impl Knowledge<'_> {
     }
 
     /// The points of the factor's curve, less that of the gauge.
-    fn functionals(&self, factor: Factor, seen: &[bool]) -> Vec<DVector<f64>> {
+    pub(super) fn functionals(&self, factor: Factor, seen: &[bool]) -> Vec<DVector<f64>> {
         let columns = self.columns;
         let model = &columns.model;
         let difference = |row: &Row, gauge: &Row| dense(columns.len, row) - dense(columns.len, gauge);
@@ -180,16 +203,14 @@ impl Knowledge<'_> {
 
     /// Standard error of ln v in each cell that was seen, all factors unknown.
     fn cell_errors(&self, seen: &[bool]) -> Vec<Option<f64>> {
-        let functionals = self.functionals(Factor::Profile, seen);
-        let Some(factor) = factorize(&self.robust.normal.gram, &self.columns.prior(), self.robust.sigma)
-        else {
-            return vec![None; seen.len()];
-        };
-        let mut errors = functionals
-            .iter()
-            .map(|functional| self.robust.sigma * functional.dot(&factor.solve(functional)).sqrt());
+        let mut errors = self.posterior(&self.functionals(Factor::Profile, seen)).into_iter().map(f64::sqrt);
         seen.iter().map(|&seen| if seen { errors.next() } else { None }).collect()
     }
+}
+
+/// Root of the mean of variances.
+fn root_mean(variances: &[f64]) -> f64 {
+    (variances.iter().sum::<f64>() / variances.len().max(1) as f64).sqrt()
 }
 
 fn dense(len: usize, row: &Row) -> DVector<f64> {

@@ -12,11 +12,15 @@
 //! deviation of about 1, that of the profile's tensor about 0.5 per squared half
 //! diagonal. The weight against the observations follows from their own σ.
 //!
+//! Errors of the factors are those of a fit whose observations share errors within their frame ([`Observation::frame`]).
+//!
 //! A recording need not determine every factor. A [`Finding`] says how well the observations determine
 //! each factor, and why a factor is refused. The numbers of a refused factor are withheld.
 
 mod columns;
 mod conclusion;
+#[cfg(test)]
+mod coverage_tests;
 mod determine;
 mod factor;
 mod finding;
@@ -24,6 +28,7 @@ mod model;
 mod problem;
 mod refusal;
 mod robust;
+mod shared_errors;
 #[cfg(test)]
 mod tests;
 

@@ -14,6 +14,9 @@ pub(crate) struct Observation {
     /// Which surface: equal numbers share one unknown brightness e_i. Numbers should be dense: memory grows with
     /// the largest.
     pub surface: u32,
+    /// Number of the frame, counted through all recordings. The observations of one frame may share errors: those of
+    /// its pose.
+    pub frame: u32,
     /// Which integration time; 0 where [`JointModel::time`] is absent.
     pub time: u16,
     /// ln of the amplitude (DN), corrected for saturation where that is possible.

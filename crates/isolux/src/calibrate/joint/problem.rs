@@ -75,7 +75,7 @@ impl Problem {
         self.starts.len() - 1
     }
 
-    fn groups(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+    pub(super) fn groups(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
         self.starts.windows(2).map(|ends| ends[0]..ends[1])
     }
 

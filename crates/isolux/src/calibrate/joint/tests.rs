@@ -4,12 +4,12 @@ use super::*;
 use crate::frame::Shape;
 use crate::terms::profile::Places;
 
-const NOISE: f64 = 0.02;
+pub(super) const NOISE: f64 = 0.02;
 const FREQUENCY_HZ: f64 = 20e6;
 const SHAPE: Shape = Shape::new(144, 176);
 
 /// Uniform numbers 0..1 (Knuth's MMIX generator), and nearly normal ones.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     fn uniform(&mut self) -> f64 {
@@ -17,11 +17,11 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    fn normal(&mut self) -> f64 {
+    pub(super) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 
@@ -32,18 +32,18 @@ impl Random {
     }
 }
 
-fn places() -> Places {
+pub(super) fn places() -> Places {
     Places::new(SHAPE, None)
 }
 
 /// Tangent of the angle off the axis, at one half diagonal: 29°.
 const TANGENT: f64 = 0.55;
 
-fn ln_profile([x, y]: [f64; 2]) -> f64 {
+pub(super) fn ln_profile([x, y]: [f64; 2]) -> f64 {
     -2.5 * (TANGENT * TANGENT * (x * x + y * y)).ln_1p() + 0.05 * x + 0.03 * x * y * y
 }
 
-fn ln_law(d: f64) -> f64 {
+pub(super) fn ln_law(d: f64) -> f64 {
     let beside = |d: f64| {
         -2.0 * (0.0025 / (d * d)).ln_1p()
             + 0.015 * (16.0 * std::f64::consts::PI * FREQUENCY_HZ * d / 299_792_458.0).cos()
@@ -56,10 +56,10 @@ fn ln_time(j: usize) -> f64 {
     t.ln() - 0.01 * t
 }
 
-const EXPONENT: f64 = 1.3;
+pub(super) const EXPONENT: f64 = 1.3;
 
 /// What a surface of reflectivity `albedo` gives; `time` indexes [`ln_time`].
-fn observe(
+pub(super) fn observe(
     random: &mut Random,
     surface: u32,
     albedo: f64,
@@ -71,6 +71,8 @@ fn observe(
         albedo.ln() + ln_time(usize::from(time)) + ln_law(d) + ln_profile(place) + EXPONENT * cosine.ln();
     Observation {
         surface,
+        // The errors are independent, whatever frames they are divided into.
+        frame: (random.0 >> 40) as u32 % 64,
         time,
         ln_amplitude: (truth + random.error()) as f32,
         distance_m: d as f32,
@@ -80,7 +82,7 @@ fn observe(
     }
 }
 
-fn everything() -> JointModel {
+pub(super) fn everything() -> JointModel {
     JointModel {
         time: Some(TimeModel { count: 6, reference: 2 }),
         distance: Some(DistanceModel { reference_m: 0.75, modulation_frequency_hz: Some(FREQUENCY_HZ) }),

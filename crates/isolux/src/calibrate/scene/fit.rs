@@ -43,7 +43,7 @@ pub(in crate::calibrate) fn fit(
     let fitted = Fitted {
         observations: &input.observations,
         fit: &fit,
-        held_out_residual: held_out(&input.observations, &input.frames, &fit.model, HELD_OUT_FOLDS),
+        held_out_residual: held_out(&input.observations, &fit.model, HELD_OUT_FOLDS),
         fitted_on: used(scenes).map(|scene| scene.source.clone()).collect(),
         warnings: warnings.iter().map(ToString::to_string).collect(),
     };

@@ -13,8 +13,6 @@ const UNEVENNESS: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub(super) struct JointInput {
     pub(super) observations: Vec<Observation>,
-    /// Frame of each, counted through all recordings.
-    pub(super) frames: Vec<u32>,
     pub(super) model: JointModel,
     /// Integration times, µs, increasing; empty where they are unknown.
     pub(super) times_us: Vec<f64>,
@@ -28,7 +26,6 @@ impl JointInput {
         let times_us = times_us(recordings);
         let mut input = Self {
             observations: Vec::new(),
-            frames: Vec::new(),
             model: model(settings, recordings, &times_us, places),
             times_us,
         };
@@ -41,6 +38,7 @@ impl JointInput {
                 let [row, column] = seen.pixel.map(f64::from);
                 input.observations.push(Observation {
                     surface: first_surface + seen.surface,
+                    frame: first_frame + seen.frame,
                     time: time.unwrap_or(0) as u16,
                     ln_amplitude: seen.ln_amplitude,
                     distance_m: seen.distance_m,
@@ -48,7 +46,6 @@ impl JointInput {
                     cosine: seen.cosine,
                     weight: (usual / variance(seen.sigma)) as f32,
                 });
-                input.frames.push(first_frame + seen.frame);
                 (surfaces, frames) = (surfaces.max(seen.surface + 1), frames.max(seen.frame + 1));
             }
             (first_surface, first_frame) = (first_surface + surfaces, first_frame + frames);

@@ -1,5 +1,6 @@
 //! Windows of all recordings as observations of the joint model.
 
+use super::noise::WindowNoise;
 use super::{TargetError, TargetWarning, TargetWindows};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation, TimeModel};
@@ -12,8 +13,9 @@ use crate::terms::{Lut, Spline, linear};
 /// Windows as observations.
 pub(super) struct JointInput {
     pub(super) observations: Vec<Observation>,
-    /// Frame of each, counted through all recordings.
-    pub(super) frames: Vec<u32>,
+    /// The window of each: its recording and number there, and what was added to its ln A.
+    windows: Vec<(usize, usize, f64)>,
+    noise: WindowNoise,
     pub(super) model: JointModel,
     /// Recording (by number) and label of each surface.
     pub(super) surfaces: Vec<(usize, u8)>,
@@ -37,14 +39,15 @@ impl JointInput {
         let times_us = if known.lut.is_some() { Vec::new() } else { times(targets) };
         let mut input = Self {
             observations: Vec::new(),
-            frames: Vec::new(),
+            windows: Vec::new(),
+            noise: WindowNoise::fit(targets.iter().flat_map(|target| &target.windows)),
             model: model(settings, targets, &known, &times_us, places),
             surfaces: Vec::new(),
             times_us,
         };
         let mut first_frame = 0;
         for (number, target) in targets.iter().enumerate() {
-            for window in &target.windows {
+            for (index, window) in target.windows.iter().enumerate() {
                 let Some(correction) = known.correction(target.linear, window.time_us, window.distance_m)
                 else {
                     continue;
@@ -54,14 +57,15 @@ impl JointInput {
                 let [row, column] = window.pixel.map(f64::from);
                 input.observations.push(Observation {
                     surface,
+                    frame: first_frame + window.frame,
                     time: u16::try_from(time).unwrap_or(u16::MAX),
                     ln_amplitude: (f64::from(window.ln_amplitude) + correction) as f32,
                     distance_m: window.distance_m,
                     place: places.at(row, column).map(|value| value as f32),
                     cosine: window.cosine,
-                    weight: window.weight,
+                    weight: input.noise.effect(window, f64::from(window.ln_amplitude)).weight as f32,
                 });
-                input.frames.push(first_frame + window.frame);
+                input.windows.push((number, index, correction));
             }
             let frames = target.source.frames_used + target.source.frames_left_out;
             first_frame += u32::try_from(frames).unwrap_or(u32::MAX);
@@ -76,6 +80,22 @@ impl JointInput {
             self.surfaces.len() - 1
         });
         u32::try_from(number).unwrap_or(u32::MAX)
+    }
+
+    /// Weighs the windows anew and takes the bias of their noise out, by the amplitudes that a first fit, with these
+    /// residuals, expects of them. Windows that it says nothing of stay as they are.
+    pub(super) fn expect(&mut self, targets: &[TargetWindows], residuals: &[f64]) {
+        for ((observation, &(target, index, correction)), residual) in
+            self.observations.iter_mut().zip(&self.windows).zip(residuals)
+        {
+            let window = &targets[target].windows[index];
+            let measured = f64::from(window.ln_amplitude);
+            if residual.is_finite() {
+                let effect = self.noise.effect(window, measured - residual);
+                observation.weight = effect.weight as f32;
+                observation.ln_amplitude = (measured + correction - effect.bias) as f32;
+            }
+        }
     }
 
     /// Takes the weight from the surfaces that are marked.

@@ -4,10 +4,9 @@ use super::patches::PATCH_PX;
 use crate::frame::{Frame, IntegrationTime, PixelFlags, Plane, Shape};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
-/// A window's median amplitude must stand this many times above its pixels' scatter: fainter ones are biased.
-const LEAST_SIGNAL_TO_NOISE: f64 = 5.0;
-/// Standard deviation that no window's median is trusted beyond, in ln: the unevenness of targets.
-const UNEVENNESS: f64 = 0.01;
+/// A window whose pixels scatter by more than this share of their median is faint beyond use, or uneven. Which of the
+/// faint ones count is not decided by their own scatter, see [`super::noise`].
+const LARGEST_SCATTER: f64 = 0.5;
 /// Distances within a window may spread by this share of their median; more is an edge.
 const LARGEST_SPREAD: f64 = 0.1;
 
@@ -25,7 +24,10 @@ pub(super) struct WindowMedians {
     pub(super) pixel: [u16; 2],
     /// NaN where it is not known.
     pub(super) cosine: f32,
-    pub(super) weight: f32,
+    /// Robust standard deviation of ln A of its pixels.
+    pub(super) scatter: f32,
+    /// Pixels that were measured.
+    pub(super) pixels: u8,
 }
 
 /// Indices of the window whose first pixel is at (row, column).
@@ -66,11 +68,9 @@ pub(super) fn measure(frame: &Frame, target: &Plane<u8>, corner: (usize, usize))
     }
     let (ln_amplitude, scatter) = centre_and_scatter(&mut logs[..count])?;
     let (distance_m, distance_scatter) = centre_and_scatter(&mut distances[..count])?;
-    if scatter * LEAST_SIGNAL_TO_NOISE > 1.0 || distance_scatter > LARGEST_SPREAD * distance_m {
+    if scatter > LARGEST_SCATTER || distance_scatter > LARGEST_SPREAD * distance_m {
         return None;
     }
-    // A median of n normal values has the standard error 1.25 σ / √n.
-    let variance = (1.25 * scatter).powi(2) / count as f64;
     let middle = |start: usize| u16::try_from(start + PATCH_PX / 2).unwrap_or(u16::MAX);
     Some(WindowMedians {
         frame: 0,
@@ -80,7 +80,8 @@ pub(super) fn measure(frame: &Frame, target: &Plane<u8>, corner: (usize, usize))
         distance_m: distance_m as f32,
         pixel: [middle(corner.0), middle(corner.1)],
         cosine: f32::NAN,
-        weight: (UNEVENNESS.powi(2) / (UNEVENNESS.powi(2) + variance)) as f32,
+        scatter: scatter as f32,
+        pixels: count as u8,
     })
 }
 

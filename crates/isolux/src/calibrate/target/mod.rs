@@ -4,9 +4,11 @@
 
 mod error;
 mod fit;
+mod flat;
 mod gloss;
 mod joint_input;
 mod measure;
+mod noise;
 mod patches;
 mod report;
 mod sweep;

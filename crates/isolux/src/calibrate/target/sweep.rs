@@ -1,5 +1,8 @@
 //! Measures a recording of labelled targets, frame by frame.
 
+use std::collections::BTreeMap;
+
+use super::flat::FlatLabel;
 use super::measure::{WindowMedians, measure, middle_cosine};
 use super::patches::{PATCH_PX, Patches};
 use crate::calibrate::sweep_frames::SweepFrames;
@@ -96,22 +99,37 @@ impl TargetSweep {
         {
             return Ok(());
         }
-        if let (Some(distance_m), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
-            self.incidence.take(frame, distance_m, intrinsics);
-        }
         let before = self.windows.len();
-        for &(row, column) in self.patches.find(target) {
+        self.measure(frame, target, u32::try_from(number).unwrap_or(u32::MAX));
+        self.frames_used += usize::from(self.windows.len() > before);
+        Ok(())
+    }
+
+    /// The windows of all labels. Distance and angle are those of the label's plane, where it is flat, else those of
+    /// the window.
+    fn measure(&mut self, frame: &Frame, target: &Plane<u8>, number: u32) {
+        let corners = self.patches.find(target);
+        let mut planes: BTreeMap<u8, Option<FlatLabel>> = BTreeMap::new();
+        let mut has_normals = false;
+        for &(row, column) in corners {
             let Some(mut window) = measure(frame, target, (row, column)) else { continue };
-            window.frame = u32::try_from(number).unwrap_or(u32::MAX);
-            if let (Some(_), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
-                let cosine = |index| self.incidence.cosine(index, intrinsics);
-                window.cosine = middle_cosine(cosine, shape, (row, column));
+            window.frame = number;
+            if let (Some(distance_m), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+                let plane = planes
+                    .entry(window.label)
+                    .or_insert_with(|| FlatLabel::fit(frame, target, window.label, corners, intrinsics));
+                if !plane.is_some_and(|plane| plane.place(&mut window)) {
+                    if !has_normals {
+                        self.incidence.take(frame, distance_m, intrinsics);
+                        has_normals = true;
+                    }
+                    let cosine = |index| self.incidence.cosine(index, intrinsics);
+                    window.cosine = middle_cosine(cosine, frame.shape(), (row, column));
+                }
                 self.without_normal += usize::from(window.cosine.is_nan());
             }
             self.windows.push(window);
         }
-        self.frames_used += usize::from(self.windows.len() > before);
-        Ok(())
     }
 
     /// Ends the recording.
