@@ -13,20 +13,28 @@
 //! Targets and scenes are fitted with one model of time, distance, place and angle, [`joint`]. What a recording
 //! does not determine becomes no term, but a [`FitWarning`].
 
+mod blocks;
 mod distance;
+mod drift;
 mod error;
 mod exposure;
 mod factor_terms;
 mod fit;
 pub mod joint;
+mod lag;
 mod measure_error;
 mod measurements;
 mod report;
+mod residual;
 mod runs;
 pub mod scene;
 mod settings;
+mod severity;
+mod smooth_curve;
+mod sweep_fault;
 mod sweep_frames;
 mod target;
+mod verdict;
 mod warning;
 
 pub use distance::{DistanceSweep, DistanceWarning, ReferenceDecays};
@@ -39,11 +47,15 @@ pub use fit::{ExposureFit, fit};
 pub use measure_error::{MeasureError, UnlikeShapes};
 pub use measurements::Measurements;
 pub use report::FitReport;
+pub use residual::TermResidual;
 pub use scene::{
     CameraMotion, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep, SceneWarning,
 };
 pub use settings::CalibrateSettings;
+pub use severity::Severity;
+pub use sweep_fault::SweepFault;
 pub use target::{
     SurfaceUse, TargetError, TargetReport, TargetSweep, TargetWarning, TargetWindows, label_windows,
 };
+pub use verdict::Verdict;
 pub use warning::FitWarning;

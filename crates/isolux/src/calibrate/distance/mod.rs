@@ -1,10 +1,15 @@
 //! Distance sweeps: recordings of a flat target at several distances, to which cubic and spline are fitted.
 
+mod background;
 mod centre;
 mod decay;
+mod faults;
 mod fit;
+mod step;
+mod stray;
 mod sweep;
 mod warning;
+mod wrap;
 
 pub(super) use fit::{DistanceFit, fit};
 pub use sweep::{DistanceSweep, ReferenceDecays};

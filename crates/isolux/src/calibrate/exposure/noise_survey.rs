@@ -118,7 +118,7 @@ impl NoiseSurvey {
         let now = Kept::of(frame);
         let whole = |value: &f32| value.is_nan() || value.fract() == 0.0;
         self.whole_numbers &= now.amplitude.iter().all(whole);
-        if let Some(before) = self.previous.take() {
+        if let Some(before) = self.previous.take().filter(|before| !before.is_another_scene(&now)) {
             self.difference_frames(&before, &now);
         }
         if self.temporal.is_empty() && self.spatial_frames < SPATIAL_FRAMES {
@@ -199,6 +199,19 @@ impl Kept {
         };
         let intensity = frame.intensity.as_ref().map(|plane| plane.values().to_vec());
         Self { amplitude, intensity, time_us }
+    }
+}
+
+impl Kept {
+    /// True where two frames of one time differ far beyond noise: black frames and flashes tell nothing about it.
+    fn is_another_scene(&self, now: &Self) -> bool {
+        const LARGEST_CHANGE: f64 = 0.2;
+        let sum = |kept: &Self| -> f64 {
+            kept.amplitude.iter().filter(|value| !value.is_nan()).map(|value| f64::from(*value)).sum()
+        };
+        let (before, after) = (sum(self), sum(now));
+        self.time_us.first() == now.time_us.first()
+            && (after - before).abs() > LARGEST_CHANGE * before.max(after)
     }
 }
 

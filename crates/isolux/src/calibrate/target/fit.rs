@@ -7,7 +7,7 @@
 
 use super::joint_input::JointInput;
 use super::report::TargetReport;
-use super::{TargetError, TargetWarning, TargetWindows, gloss};
+use super::{TargetError, TargetWarning, TargetWindows, flatness, gloss};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
@@ -28,6 +28,7 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
     let mut warnings = Vec::new();
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
+    warnings.extend(targets.iter().filter_map(curved));
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
@@ -44,7 +45,11 @@ pub(in crate::calibrate) fn fit(
         fitted_on: targets.iter().map(|target| target.source.clone()).collect(),
         warnings: warnings.iter().map(ToString::to_string).collect(),
     };
-    warnings.extend(write(&fitted, &mut calibration.terms).map(TargetWarning::Factor));
+    if fit.model.angle == AngleModel::Absent && !settings.accept_poor_fit {
+        warnings.push(TargetWarning::NoAngles);
+    } else {
+        warnings.extend(write(&fitted, &mut calibration.terms).map(TargetWarning::Factor));
+    }
     let report = TargetReport {
         surfaces,
         lambert_assumed: fit.model.angle == AngleModel::Fixed(LAMBERT),
@@ -54,6 +59,12 @@ pub(in crate::calibrate) fn fit(
         findings: fit.findings,
     };
     Ok((report, warnings))
+}
+
+fn curved(target: &TargetWindows) -> Option<TargetWarning> {
+    let flatness::Curved { deviation_m, focal_factor } = flatness::curved(target)?;
+    let recording = target.source.recording.clone();
+    Some(TargetWarning::Curved { recording, deviation_m, focal_factor })
 }
 
 /// Writes the determined factors over distance, image and angle into `terms`.

@@ -4,6 +4,7 @@
 
 mod error;
 mod fit;
+mod flatness;
 mod gloss;
 mod joint_input;
 mod measure;
