@@ -77,7 +77,7 @@ impl Drift {
     /// Difference between the largest and the smallest gain, relative, with the sign of the change.
     pub(super) fn extent(&self) -> f64 {
         let [first, last] = self.ends();
-        if first.0 <= last.0 { (last.1 - first.1).exp_m1() } else { -(first.1 - last.1).exp_m1() }
+        if first.0 <= last.0 { (last.1 - first.1).exp_m1() } else { (first.1 - last.1).exp_m1() }
     }
 
     /// True when the extent cannot be noise.

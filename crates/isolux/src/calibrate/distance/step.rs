@@ -30,9 +30,9 @@ const LEAST_POINTS: usize = 7;
 /// A change must be larger than what a cubic leaves of a smooth law, three times.
 const LEAST_CHANGE: f64 = 0.05;
 /// It must explain this share of what the smooth law leaves, ...
-const LEAST_SHARE: f64 = 0.8;
+const LEAST_SHARE: f64 = 0.7;
 /// ... and be this many standard errors large.
-const STANDARD_ERRORS: f64 = 8.0;
+const STANDARD_ERRORS: f64 = 6.0;
 /// Share of a change that the law must not be able to take up.
 const LEAST_FREE_SHARE: f64 = 0.02;
 

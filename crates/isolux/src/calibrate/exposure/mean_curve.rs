@@ -1,6 +1,5 @@
 //! The mean amplitude of the whole image at each integration time.
 
-
 use super::frame_sums::{FrameSums, Times};
 use super::{moved, stray};
 use crate::calibrate::blocks::blocks;

@@ -54,17 +54,22 @@ pub(super) fn curved(target: &TargetWindows) -> Option<Curved> {
     Some(Curved { deviation_m: median(&mut own.clone())?, focal_factor })
 }
 
-/// Root mean square distance of points (row, column, distance) from the plane that fits them best, m.
+/// Root mean square deviation, along the rays, of points (row, column, distance) from the plane that fits them best, m.
+/// On a plane, 1/d is linear in the direction of the ray. Distances across the plane would do no good: with long focal
+/// lengths, all planes that hold the line of sight fit.
 fn from_plane(face: &[[f64; 3]], intrinsics: &Intrinsics) -> f64 {
-    let point = |[row, column, distance_m]: &[f64; 3]| {
-        Vector3::from(intrinsics.ray(*row, *column)).normalize() * *distance_m
-    };
+    let ray = |[row, column, _]: &[f64; 3]| Vector3::from(intrinsics.ray(*row, *column)).normalize();
+    let (mut gram, mut moment, mut sum_m) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
+    for place in face {
+        // Errors are relative: 1/d, times d, is 1.
+        let scaled = ray(place) * place[2];
+        gram += scaled * scaled.transpose();
+        moment += scaled;
+        sum_m += place[2];
+    }
+    let Some(inverse) = gram.try_inverse() else { return f64::NAN };
+    let plane = inverse * moment;
+    let squares = face.iter().map(|place| (1.0 - plane.dot(&ray(place)) * place[2]).powi(2));
     let count = face.len() as f64;
-    let middle = face.iter().map(point).sum::<Vector3<f64>>() / count;
-    let spread = |sum: Matrix3<f64>, place: &[f64; 3]| {
-        let from_middle = point(place) - middle;
-        sum + from_middle * from_middle.transpose()
-    };
-    let spread = face.iter().fold(Matrix3::zeros(), spread);
-    (spread.symmetric_eigenvalues().min().max(0.0) / count).sqrt()
+    sum_m / count * (squares.sum::<f64>() / count).sqrt()
 }
