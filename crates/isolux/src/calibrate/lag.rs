@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn times_that_lag_or_run_ahead_are_found() {
-        for frames_per_time in [1, 2, 3] {
+        // Of pairs, one frame later is one time off one frame earlier: the sign cannot be told.
+        for frames_per_time in [1, 3] {
             let right = sweep(frames_per_time);
             assert_eq!(lag(&right), None);
             let moved = |by: isize| -> Vec<Level> {
