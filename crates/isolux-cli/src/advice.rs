@@ -48,6 +48,7 @@ fn words(advice: &Advice) -> String {
         Advice::GiveModulationFrequency => "give it with --modulation-frequency-hz",
         Advice::SkipFrames => "drop the first ones with --skip-frames",
         Advice::Window => "use another --window",
+        Advice::AcceptPoorFit => "record again, or take it as it is with --accept-poor-fit",
         _ => "",
     };
     fixed.to_owned()

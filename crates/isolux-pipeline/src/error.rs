@@ -1,6 +1,6 @@
 //! What can go wrong between a recording and a result.
 
-use isolux::calibrate::{CalibrateError, FitWarning, MeasureError};
+use isolux::calibrate::{CalibrateError, FitWarning, MeasureError, Verdict};
 use isolux::standardize::{MergeError, PlanError, StandardizeError};
 use isolux::{Advice, ShapeError};
 use isolux_camera::CameraError;
@@ -132,6 +132,14 @@ pub enum PipelineError {
         #[source]
         cause: CalibrateError,
     },
+    /// The fitted terms contradict their recordings.
+    #[error("the calibration is {verdict}")]
+    PoorFit {
+        /// The verdict, which is poor, with its reasons.
+        verdict: Verdict,
+        /// Everything that the fits found.
+        warnings: Vec<FitWarning>,
+    },
     /// The operating system refused to start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -166,6 +174,7 @@ impl PipelineError {
             Self::Frame { cause: FrameError::Standardize(cause), .. } => cause.advice(),
             Self::Measure { cause, .. } => cause.advice(),
             Self::Fit { cause, .. } => cause.advice(),
+            Self::PoorFit { .. } => Some(Advice::AcceptPoorFit),
             _ => None,
         }
     }
@@ -175,6 +184,7 @@ impl PipelineError {
     pub fn warnings(&self) -> &[FitWarning] {
         match self {
             Self::Fit { cause, .. } => cause.warnings(),
+            Self::PoorFit { warnings, .. } => warnings,
             _ => &[],
         }
     }

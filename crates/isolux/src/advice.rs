@@ -63,4 +63,6 @@ pub enum Advice {
     },
     /// Choose another size of the window.
     Window,
+    /// Take the calibration as it is, although it is poor.
+    AcceptPoorFit,
 }

@@ -70,6 +70,9 @@ pub(crate) struct CalibrateArgs {
     /// Name of the camera [default: that of the recordings]
     #[arg(long, value_name = "NAME")]
     pub(crate) camera: Option<String>,
+    /// Write the calibration even if its recordings contradict each other, so that terms are wrong by 5 % or more
+    #[arg(long)]
+    pub(crate) accept_poor_fit: bool,
     /// Print the calibration as JSON instead of a table
     #[arg(long)]
     pub(crate) json: bool,

@@ -10,7 +10,7 @@ mod measure;
 use std::path::{Path, PathBuf};
 
 use isolux::Calibration;
-use isolux::calibrate::{CalibrateError, CalibrateSettings, ExposureFit, FitReport, Measurements};
+use isolux::calibrate::{CalibrateError, CalibrateSettings, ExposureFit, FitReport, Measurements, Verdict};
 
 use self::measure::Measurer;
 use crate::error::PipelineError;
@@ -92,6 +92,8 @@ pub struct Measured {
     cameras: Vec<String>,
     /// Names of the distance sweeps.
     distance_sweeps: Vec<String>,
+    /// Whether a poor calibration is given all the same.
+    accept_poor_fit: bool,
 }
 
 /// Measures recordings in the order of the two stages. The modulation frequency is that of the settings, or else of
@@ -132,7 +134,13 @@ pub fn measure(
     }
     let mut cameras = measurer.cameras;
     cameras.dedup();
-    Ok(Measured { exposure, measurements, cameras, distance_sweeps: distance_sweep_names })
+    Ok(Measured {
+        exposure,
+        measurements,
+        cameras,
+        distance_sweeps: distance_sweep_names,
+        accept_poor_fit: settings.accept_poor_fit,
+    })
 }
 
 impl Measured {
@@ -140,7 +148,8 @@ impl Measured {
     /// recordings.
     ///
     /// # Errors
-    /// [`PipelineError::Fit`] when no recording was given or a term cannot be fitted.
+    /// [`PipelineError::Fit`] when no recording was given or a term cannot be fitted; [`PipelineError::PoorFit`] when
+    /// the verdict on the terms is poor, unless the settings accept that.
     pub fn fit(
         self,
         camera: Option<String>,
@@ -151,7 +160,13 @@ impl Measured {
         }
         let camera = camera.or_else(|| self.cameras.into_iter().next());
         let fitted = self.exposure.complete(camera, self.measurements);
-        fitted.map_err(fit_error(&self.distance_sweeps))
+        let (calibration, report) = fitted.map_err(fit_error(&self.distance_sweeps))?;
+        match Verdict::of(&calibration, &report) {
+            verdict @ Verdict::Poor { .. } if !self.accept_poor_fit => {
+                Err(PipelineError::PoorFit { verdict, warnings: report.warnings })
+            }
+            _ => Ok((calibration, report)),
+        }
     }
 
     /// The same without the linear measurements of distance sweeps, as for a camera that delivers only amplitude

@@ -3,7 +3,7 @@
 use super::distance::{self, DistanceFit, ReferenceDecays};
 use super::exposure::{self, ExposureCurve, TableError};
 use super::measurements::DistanceSweeps;
-use super::{CalibrateError, CalibrateSettings, FitReport, FitWarning, Measurements, scene, target};
+use super::{CalibrateError, CalibrateSettings, FitReport, FitWarning, Measurements, scene, target, verdict};
 use crate::calibration::Calibration;
 use crate::terms::Response;
 
@@ -106,6 +106,7 @@ impl ExposureFit {
             report.scene = Some(found);
             report.warnings.extend(warnings.into_iter().map(FitWarning::Scene));
         }
+        report.warnings.extend(verdict::misfits(&calibration, &report));
         Ok((calibration, report))
     }
 }

@@ -76,6 +76,18 @@ struct Sums {
     class: f64,
 }
 
+impl Compared {
+    /// True where two frames of one class differ far beyond noise: black frames and flashes tell nothing about it.
+    fn is_another_scene(&self, now: &Self) -> bool {
+        const LARGEST_CHANGE: f64 = 0.2;
+        let sum = |compared: &Self| -> f64 {
+            compared.amplitude.iter().filter(|value| !value.is_nan()).map(|value| f64::from(*value)).sum()
+        };
+        let (before, after) = (sum(self), sum(now));
+        self.class.first() == now.class.first() && (after - before).abs() > LARGEST_CHANGE * before.max(after)
+    }
+}
+
 impl GroupedNoise {
     pub(super) fn new(stride: usize) -> Self {
         Self {
@@ -100,7 +112,7 @@ impl GroupedNoise {
             self.interrupt();
             self.shape = shape;
         }
-        if let Some(before) = self.previous.take() {
+        if let Some(before) = self.previous.take().filter(|before| !before.is_another_scene(&now)) {
             self.difference_frames(&before, &now);
         }
         if self.temporal.is_empty() && self.spatial_frames < SPATIAL_FRAMES {

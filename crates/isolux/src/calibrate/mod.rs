@@ -14,21 +14,29 @@
 //! does not determine becomes no term, but a [`FitWarning`].
 
 mod ambient_light;
+mod blocks;
 mod distance;
+mod drift;
 mod error;
 mod exposure;
 mod factor_terms;
 mod fit;
 mod grouped_noise;
 pub mod joint;
+mod lag;
 mod measure_error;
 mod measurements;
 mod report;
+mod residual;
 mod runs;
 pub mod scene;
 mod settings;
+mod severity;
+mod smooth_curve;
+mod sweep_fault;
 mod sweep_frames;
 mod target;
+mod verdict;
 mod warning;
 
 pub use ambient_light::{AmbientSurvey, AmbientUnknown};
@@ -42,11 +50,15 @@ pub use fit::{ExposureFit, fit};
 pub use measure_error::{MeasureError, UnlikeShapes};
 pub use measurements::Measurements;
 pub use report::FitReport;
+pub use residual::TermResidual;
 pub use scene::{
     CameraMotion, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep, SceneWarning,
 };
 pub use settings::CalibrateSettings;
+pub use severity::Severity;
+pub use sweep_fault::SweepFault;
 pub use target::{
     SurfaceUse, TargetError, TargetReport, TargetSweep, TargetWarning, TargetWindows, label_windows,
 };
+pub use verdict::Verdict;
 pub use warning::FitWarning;

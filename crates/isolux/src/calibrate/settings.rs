@@ -16,6 +16,9 @@ pub struct CalibrateSettings {
     /// Modulation frequency of the sweeps, Hz, where it is known. The spline then models the aliased harmonic, and
     /// the response of the raw bins corrects the distance too.
     pub modulation_frequency_hz: Option<f64>,
+    /// Whether a calibration is given although its [`Verdict`](super::Verdict) is poor. Else the reason is given
+    /// instead.
+    pub accept_poor_fit: bool,
 }
 
 impl Default for CalibrateSettings {
@@ -26,6 +29,7 @@ impl Default for CalibrateSettings {
             skip_frames: 0,
             exclude_time_us: Vec::new(),
             modulation_frequency_hz: None,
+            accept_poor_fit: false,
         }
     }
 }

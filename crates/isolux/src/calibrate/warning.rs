@@ -4,7 +4,9 @@ use std::fmt;
 
 use super::distance::DistanceWarning;
 use super::exposure::ExposureWarning;
+use super::residual::TermResidual;
 use super::scene::SceneWarning;
+use super::severity::Severity;
 use super::target::TargetWarning;
 use crate::advice::Advice;
 
@@ -20,9 +22,24 @@ pub enum FitWarning {
     Target(TargetWarning),
     /// About scenes.
     Scene(SceneWarning),
+    /// A term fits its measurements badly.
+    Residual(TermResidual),
 }
 
 impl FitWarning {
+    /// How much it weighs.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::Exposure(warning) => warning.severity(),
+            Self::Distance(warning) => warning.severity(),
+            Self::Target(warning) => warning.severity(),
+            // What a scene does not determine is left out.
+            Self::Scene(_) => Severity::Note,
+            Self::Residual(found) => found.severity(),
+        }
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
@@ -31,6 +48,7 @@ impl FitWarning {
             Self::Distance(warning) => warning.advice(),
             Self::Target(warning) => warning.advice(),
             Self::Scene(warning) => warning.advice(),
+            Self::Residual(_) => None,
         }
     }
 }
@@ -42,6 +60,7 @@ impl fmt::Display for FitWarning {
             Self::Distance(warning) => warning.fmt(f),
             Self::Target(warning) => warning.fmt(f),
             Self::Scene(warning) => warning.fmt(f),
+            Self::Residual(found) => found.fmt(f),
         }
     }
 }

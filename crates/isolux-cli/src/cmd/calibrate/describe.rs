@@ -1,7 +1,7 @@
 //! What a fit found, in words and tables.
 
 use isolux::Calibration;
-use isolux::calibrate::FitReport;
+use isolux::calibrate::{FitReport, Verdict};
 use isolux::terms::cubic::Scaling;
 use isolux::terms::{FitQuality, Lut, Response, Spline};
 
@@ -10,7 +10,10 @@ use crate::terminal::table;
 
 /// The fit, for a person to judge.
 pub(crate) fn describe(calibration: &Calibration, report: &FitReport) -> String {
-    let mut text = vec![format!("camera: {}", calibration.camera.as_deref().unwrap_or("(not named)"))];
+    let mut text = vec![
+        Verdict::of(calibration, report).to_string(),
+        format!("camera: {}", calibration.camera.as_deref().unwrap_or("(not named)")),
+    ];
     if let Some(lut) = &calibration.terms.lut {
         text.push(format!("\nlut, multiplier over integration time: {}", quality(&lut.fit, "times")));
         text.push(lut_table(lut));

@@ -41,6 +41,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
         skip_frames: args.skip_frames,
         exclude_time_us: args.exclude_time_us.clone(),
         modulation_frequency_hz: None,
+        accept_poor_fit: args.accept_poor_fit,
     };
     let observer = Terminal::default();
     let fitted = isolux_pipeline::calibrate(&settings, args.camera.clone(), inputs.open()?, &observer);

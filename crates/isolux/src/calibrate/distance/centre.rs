@@ -19,6 +19,8 @@ pub(super) struct Measurement {
     pub(super) distance_error_m: f64,
     /// Mean amplitude.
     pub(super) amplitude_dn: f64,
+    /// Standard error of the mean amplitude.
+    pub(super) amplitude_error_dn: f64,
     /// Mean amplitude over its noise.
     pub(super) signal_to_noise: f64,
     /// Pixels that were averaged.
@@ -59,13 +61,14 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
         differences::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
     };
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
-    let distance_sd_m = deviation(&distances);
+    let (distance_sd_m, amplitude_sd_dn) = (deviation(&distances), deviation(&amplitudes));
     Some(Measurement {
         distance_m,
         distance_sd_m,
         distance_error_m: distance_sd_m / (count as f64).sqrt(),
         amplitude_dn,
-        signal_to_noise: amplitude_dn / deviation(&amplitudes),
+        amplitude_error_dn: amplitude_sd_dn / (count as f64).sqrt(),
+        signal_to_noise: amplitude_dn / amplitude_sd_dn,
         pixels: count as f64,
         spread_m: slope_spread(&distances, window),
     })

@@ -21,18 +21,19 @@ const LEAST_RELIABLE_SHARE: f64 = 1.0 / 3.0;
 /// What was measured at one integration time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Positions {
-    reliable: Vec<Position>,
+    pub(super) reliable: Vec<Position>,
     /// Frames without a reliable distance.
     pub(super) unreliable: usize,
 }
 
 /// Frames of one position of the target.
 #[derive(Clone, Debug)]
-struct Position {
-    first_frame: usize,
-    measurements: Vec<Measurement>,
+pub(super) struct Position {
+    /// Number of each frame.
+    pub(super) frames: Vec<usize>,
+    pub(super) measurements: Vec<Measurement>,
     /// Noise of the amplitude, of all pairs of repeated frames.
-    noise: Option<NoiseOfSample>,
+    pub(super) noise: Option<NoiseOfSample>,
 }
 
 impl Positions {
@@ -41,12 +42,13 @@ impl Positions {
     pub(super) fn add(&mut self, frame: usize, measurement: Measurement, follows: bool) -> bool {
         match self.reliable.last_mut() {
             Some(last) if follows && last.holds(&measurement) => {
+                last.frames.push(frame);
                 last.measurements.push(measurement);
                 true
             }
             _ => {
-                let measurements = vec![measurement];
-                self.reliable.push(Position { first_frame: frame, measurements, noise: None });
+                let (frames, measurements) = (vec![frame], vec![measurement]);
+                self.reliable.push(Position { frames, measurements, noise: None });
                 false
             }
         }
@@ -154,7 +156,7 @@ impl Position {
         })
     }
 
-    fn mean(&self, value: impl Fn(&Measurement) -> f64) -> f64 {
+    pub(super) fn mean(&self, value: impl Fn(&Measurement) -> f64) -> f64 {
         self.measurements.iter().map(value).sum::<f64>() / self.measurements.len() as f64
     }
 
@@ -170,7 +172,7 @@ impl Position {
         let noise_m = self.mean(|m| m.distance_error_m);
         // Half the tolerance that defines a position: no position can range over more than twice of it.
         let moved = range_m > (STANDARD_ERRORS * noise_m).max(0.5 * POSITION_TOLERANCE_M);
-        let (recording, frame) = (recording.to_owned(), self.first_frame);
+        let (recording, frame) = (recording.to_owned(), self.frames.first().copied().unwrap_or(0));
         moved.then_some(DistanceWarning::TargetMoved { recording, frame, range_m })
     }
 }

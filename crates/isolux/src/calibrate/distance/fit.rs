@@ -61,7 +61,7 @@ pub(in crate::calibrate) fn fit(
     let linear = Pooled::of(linear);
     for warning in linear.warnings {
         // Most warnings hold for both measurements.
-        if !warnings.contains(&warning) {
+        if !warnings.iter().any(|known| known.repeats(&warning)) {
             warnings.push(warning);
         }
     }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use super::DistanceWarning;
 use super::centre::{Measurement, measure};
 use super::decay::Positions;
+use super::faults::{Watch, faults};
 use super::repeats::Repeats;
+use crate::calibrate::lag::Level;
 use crate::calibrate::sweep_frames::{SweepFrames, single_or_unknown_time};
 use crate::calibrate::{CalibrateSettings, MeasureError};
 use crate::frame::Frame;
@@ -27,6 +29,19 @@ pub struct DistanceSweep {
     last_time: Option<u64>,
     repeats: Repeats,
     widest: Option<Widest>,
+    watch: Watch,
+    last: Option<Seen>,
+}
+
+/// What is remembered of the last frame.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    number: usize,
+    time: u64,
+    /// Distance in the window, m; NaN where it could not be measured.
+    distance_m: f64,
+    /// Number of the place that the target is in.
+    place: usize,
 }
 
 /// The frame with the largest tilt so far.
@@ -61,6 +76,8 @@ impl DistanceSweep {
             last_time: None,
             repeats: Repeats::default(),
             widest: None,
+            watch: Watch::default(),
+            last: None,
         }
     }
 
@@ -76,13 +93,34 @@ impl DistanceSweep {
         if self.frames.place(time_us).is_none() {
             return Ok(());
         }
-        match measure(frame, distances_m.values(), self.frames.settings.window_px) {
+        let measured = measure(frame, distances_m.values(), self.frames.settings.window_px);
+        self.note(number, time_us, frame, measured.as_ref());
+        match measured {
             Some(measurement) => {
                 self.add(time_us.to_bits(), number, measurement, (frame, distances_m.values()))
             }
             None => self.unusable += 1,
         }
         Ok(())
+    }
+
+    /// Notes what tells the faults of the recording.
+    fn note(&mut self, number: usize, time_us: f64, frame: &Frame, measured: Option<&Measurement>) {
+        /// From one place to the next, the target moves by this share at least.
+        const NEXT_PLACE: f64 = 0.02;
+        let (time, found) = (time_us.to_bits(), measured.filter(|found| found.is_reliable()));
+        let distance_m = found.map_or(f64::NAN, |found| found.distance_m);
+        let (mut place, mut repeats) = (0, false);
+        if let Some(last) = self.last {
+            let moved = (distance_m - last.distance_m).abs() > NEXT_PLACE * last.distance_m;
+            place = last.place + usize::from(moved);
+            repeats = last.number + 1 == number && last.time == time && !moved && !distance_m.is_nan();
+        }
+        self.last = Some(Seen { number, time, distance_m, place });
+        let ln_level = found.map_or(f64::NAN, |found| found.amplitude_dn.ln());
+        self.watch.levels.push(Level { time_us, ln_level, place });
+        self.watch.drift.push(number, frame, repeats);
+        self.watch.background.push(number, time, frame);
     }
 
     fn add(&mut self, time: u64, number: usize, measurement: Measurement, frame: (&Frame, &[f32])) {
@@ -105,9 +143,10 @@ impl DistanceSweep {
 
     /// Ends the sweep: one decay per time, each starting where over-saturation ends.
     #[must_use]
-    pub fn finish(self) -> ReferenceDecays {
+    pub fn finish(mut self) -> ReferenceDecays {
         let recording = &self.frames.recording;
-        let mut warnings = Vec::new();
+        let found = faults(recording, &self.frames.settings, &self.watch, &mut self.times);
+        let mut warnings: Vec<DistanceWarning> = found.into_iter().map(DistanceWarning::Fault).collect();
         if self.unusable > 0 {
             let frames = self.unusable;
             warnings.push(DistanceWarning::SaturationInWindow { recording: recording.clone(), frames });

@@ -3,6 +3,8 @@
 use std::fmt;
 
 use crate::advice::Advice;
+use crate::calibrate::severity::Severity;
+use crate::calibrate::sweep_fault::SweepFault;
 use crate::terms::response::AmbientError;
 use crate::terms::spline::SplineError;
 
@@ -10,6 +12,8 @@ use crate::terms::spline::SplineError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DistanceWarning {
+    /// A fault of the recording.
+    Fault(SweepFault),
     /// Frames whose window is saturated or empty.
     SaturationInWindow {
         /// The recording.
@@ -107,10 +111,33 @@ pub enum DistanceWarning {
 }
 
 impl DistanceWarning {
+    /// True when both say the same fault of the same recording, found on delivered and on linear amplitudes.
+    pub(super) fn repeats(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Fault(one), Self::Fault(other)) => one.repeats(other),
+            _ => self == other,
+        }
+    }
+
+    /// How much it weighs.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::Fault(fault) => fault.severity(),
+            Self::TargetNotFronto { .. }
+            | Self::TargetMoved { .. }
+            | Self::TooFewDistances { .. }
+            | Self::NoSpline { .. }
+            | Self::Outliers { .. } => Severity::Doubt,
+            _ => Severity::Note,
+        }
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
+            Self::Fault(fault) => fault.advice(),
             Self::TargetNotFronto { .. } => Some(Advice::Window),
             Self::NoSpline { reason } => reason.advice(),
             _ => None,
@@ -121,6 +148,7 @@ impl DistanceWarning {
 impl fmt::Display for DistanceWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Fault(fault) => fault.fmt(f),
             Self::SaturationInWindow { recording, frames } => write!(
                 f,
                 "{recording}: {frames} frames left out, saturated or invalid in more than 5 % of the window: \

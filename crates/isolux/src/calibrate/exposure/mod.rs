@@ -2,10 +2,15 @@
 //! time, the response of the pixels and the noise are fitted.
 
 mod evidence;
+mod faults;
 mod fit;
 mod floor;
+mod frame_sums;
 mod mean_curve;
+mod moved;
 mod noise_survey;
+mod proportion;
+mod stray;
 mod sweep;
 mod tiers;
 mod warning;

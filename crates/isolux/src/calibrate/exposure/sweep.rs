@@ -2,10 +2,14 @@
 
 use super::ExposureWarning;
 use super::evidence::{Collector, ResponseEvidence};
+use super::faults::faults;
 use super::floor::FloorWatch;
+use super::frame_sums::FrameSums;
 use super::mean_curve::{MeanCurve, Means};
 use super::noise_survey::{NoiseCells, NoiseSurvey};
+use crate::calibrate::drift::DriftWatch;
 use crate::calibrate::runs::Place;
+use crate::calibrate::sweep_fault::SweepFault;
 use crate::calibrate::sweep_frames::{SweepFrames, single_time};
 use crate::calibrate::{CalibrateSettings, MeasureError};
 use crate::calibration::NoiseFloor;
@@ -27,6 +31,7 @@ pub struct ExposureSweep {
     survey: NoiseSurvey,
     collector: Collector,
     motion: MotionWatch,
+    drift: DriftWatch,
 }
 
 /// The result of an exposure sweep: one mean per integration time, and what response and noise are fitted to.
@@ -61,6 +66,7 @@ impl ExposureSweep {
             survey: NoiseSurvey::new(),
             collector: Collector::new(),
             motion: MotionWatch::default(),
+            drift: DriftWatch::default(),
         }
     }
 
@@ -79,10 +85,11 @@ impl ExposureSweep {
         };
         let first = place == Place::First;
         self.used += 1;
-        self.curve.push(time_us, frame);
-        self.floor.push(time_us, frame, first);
+        self.curve.push(number, time_us, frame);
+        self.floor.push(number, time_us, frame, first);
         self.survey.push(frame);
-        self.collector.push(time_us, frame, first);
+        self.collector.push(number, time_us, frame, first);
+        self.drift.push(number, frame, !first);
         if first {
             self.motion.push(time_us, frame);
         }
@@ -91,24 +98,31 @@ impl ExposureSweep {
 
     /// Ends the sweep and computes its result.
     #[must_use]
-    pub fn finish(self) -> ExposureCurve {
+    pub fn finish(mut self) -> ExposureCurve {
+        let recording = self.frames.recording.clone();
+        let noise_dn = self.floor.floor(&[]).map(|floor| floor.amplitude_sd_dn);
+        let faults = faults(&recording, &mut self.curve, &self.drift, noise_dn);
         let means = self.curve.means();
-        let warnings = self.warnings(&means);
+        let warnings = self.warnings(&means, faults);
         let Means { samples, saturated_share, .. } = means;
         let mut noise = self.survey.finish();
         noise.up_to(nearly_linear_up_to(&samples));
+        let left_out: Vec<&FrameSums> = self.curve.times().values().flatten().collect();
+        let stray: Vec<usize> =
+            left_out.iter().filter(|frame| frame.stray).map(|frame| frame.number).collect();
+        let moved = left_out.iter().map(|frame| (frame.number, frame.moved.as_slice()));
         ExposureCurve {
-            source: self.frames.source(self.used),
+            source: self.frames.source(self.used - stray.len()),
             samples,
             saturated_share,
-            noise_floor: self.floor.floor(),
+            noise_floor: self.floor.floor(&stray),
             noise,
-            evidence: self.collector.finish(),
+            evidence: self.collector.finish(&stray, &moved.collect()),
             warnings,
         }
     }
 
-    fn warnings(&self, means: &Means) -> Vec<ExposureWarning> {
+    fn warnings(&self, means: &Means, faults: Vec<SweepFault>) -> Vec<ExposureWarning> {
         let recording = || self.frames.recording.clone();
         let without = means.without_measurement_us.iter().map(|&integration_time_us| {
             ExposureWarning::NoMeasurement { recording: recording(), integration_time_us }
@@ -117,11 +131,16 @@ impl ExposureSweep {
         if self.frames.times_decreased() {
             warnings.push(ExposureWarning::TimesNotIncreasing { recording: recording() });
         }
-        warnings.extend(self.motion.verdict().map(|movement| ExposureWarning::SceneMoved {
+        // What moved for a moment is left out, and with times that lag nothing is known about movement.
+        let explained =
+            |fault: &SweepFault| matches!(fault, SweepFault::PartsMoved { .. } | SweepFault::TimesLag { .. });
+        let movement = self.motion.verdict().filter(|_| !faults.iter().any(explained));
+        warnings.extend(movement.map(|movement| ExposureWarning::SceneMoved {
             recording: recording(),
             integration_time_us: movement.integration_time_us,
             share: movement.share,
         }));
+        warnings.extend(faults.into_iter().map(ExposureWarning::Fault));
         let drift = means.drift.filter(|drift| drift.abs() > SETTLING_SHARE);
         warnings.extend(
             drift.map(|relative_drift| ExposureWarning::Settling { recording: recording(), relative_drift }),

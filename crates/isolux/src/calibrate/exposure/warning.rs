@@ -3,12 +3,16 @@
 use std::fmt;
 
 use crate::advice::Advice;
+use crate::calibrate::severity::Severity;
+use crate::calibrate::sweep_fault::SweepFault;
 use crate::terms::response::ResponseError;
 
 /// A warning about an exposure sweep, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExposureWarning {
+    /// A fault of the recording.
+    Fault(SweepFault),
     /// The integration times of a sweep do not increase.
     TimesNotIncreasing {
         /// The recording.
@@ -58,10 +62,22 @@ pub enum ExposureWarning {
 }
 
 impl ExposureWarning {
+    /// How much it weighs.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::Fault(fault) => fault.severity(),
+            Self::SceneMoved { .. } => Severity::Poor,
+            Self::NoMeasurement { .. } | Self::NoTier(_) => Severity::Note,
+            _ => Severity::Doubt,
+        }
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
+            Self::Fault(fault) => fault.advice(),
             Self::Settling { .. } => Some(Advice::SkipFrames),
             _ => None,
         }
@@ -71,6 +87,7 @@ impl ExposureWarning {
 impl fmt::Display for ExposureWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Fault(fault) => fault.fmt(f),
             Self::TimesNotIncreasing { recording } => write!(
                 f,
                 "{recording}: the integration times do not increase throughout; a warm camera then meets other \

@@ -7,7 +7,7 @@
 
 use super::joint_input::JointInput;
 use super::report::TargetReport;
-use super::{TargetError, TargetWarning, TargetWindows, gloss};
+use super::{TargetError, TargetWarning, TargetWindows, flatness, gloss};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
@@ -33,6 +33,7 @@ pub(in crate::calibrate) fn fit(
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
     let first = joint::solve(&input.observations, &input.model)?;
     input.expect(targets, &first.residuals);
+    warnings.extend(targets.iter().filter_map(curved));
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
@@ -49,7 +50,11 @@ pub(in crate::calibrate) fn fit(
         fitted_on: targets.iter().map(|target| target.source.clone()).collect(),
         warnings: warnings.iter().map(ToString::to_string).collect(),
     };
-    warnings.extend(write(&fitted, &mut calibration.terms).map(TargetWarning::Factor));
+    if fit.model.angle == AngleModel::Absent && !settings.accept_poor_fit {
+        warnings.push(TargetWarning::NoAngles);
+    } else {
+        warnings.extend(write(&fitted, &mut calibration.terms).map(TargetWarning::Factor));
+    }
     let report = TargetReport {
         surfaces,
         lambert_assumed: fit.model.angle == AngleModel::Fixed(LAMBERT),
@@ -59,6 +64,12 @@ pub(in crate::calibrate) fn fit(
         findings: fit.findings,
     };
     Ok((report, warnings))
+}
+
+fn curved(target: &TargetWindows) -> Option<TargetWarning> {
+    let flatness::Curved { deviation_m, focal_factor } = flatness::curved(target)?;
+    let recording = target.source.recording.clone();
+    Some(TargetWarning::Curved { recording, deviation_m, focal_factor })
 }
 
 /// Writes the determined factors over distance, image and angle into `terms`.

@@ -5,6 +5,7 @@
 mod error;
 mod fit;
 mod flat;
+mod flatness;
 mod gloss;
 mod joint_input;
 mod measure;

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::advice::Advice;
 use crate::calibrate::factor_terms::FactorWarning;
+use crate::calibrate::severity::Severity;
 
 /// A warning about recordings of targets, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,17 @@ pub enum TargetWarning {
         /// The recording.
         recording: String,
     },
+    /// A flat target that the intrinsics make curved.
+    Curved {
+        /// The recording.
+        recording: String,
+        /// Deviation from the plane, root mean square, m.
+        deviation_m: f64,
+        /// With the focal lengths times this factor, the target would be flat.
+        focal_factor: f64,
+    },
+    /// Laws over distance and place that are not given, because no angle of incidence is known.
+    NoAngles,
     /// A recording whose distances give no planes.
     FewNormals {
         /// The recording.
@@ -44,11 +56,21 @@ pub enum TargetWarning {
 }
 
 impl TargetWarning {
+    /// How much it weighs.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::Curved { .. } => Severity::Poor,
+            Self::Glossy { .. } | Self::Factor(_) => Severity::Note,
+            _ => Severity::Doubt,
+        }
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
-            Self::NoIntrinsics { .. } => Some(Advice::GiveIntrinsics),
+            Self::NoIntrinsics { .. } | Self::NoAngles => Some(Advice::GiveIntrinsics),
             Self::Factor(factor) => factor.advice(),
             _ => None,
         }
@@ -67,6 +89,16 @@ impl fmt::Display for TargetWarning {
                 f,
                 "{recording}: no intrinsics {{fx, fy, cx, cy}}, so no angles of incidence: its windows count for no \
                  angle"
+            ),
+            Self::Curved { recording, deviation_m, focal_factor } => write!(
+                f,
+                "{recording}: the intrinsics do not fit: the flat target appears curved, by {:.0} mm; it would be flat with \
+                 focal lengths of about {focal_factor:.2} times theirs",
+                1000.0 * deviation_m
+            ),
+            Self::NoAngles => f.write_str(
+                "targets: no spline and no profile: without angles of incidence, a tilted target looks like a darker one, \
+                 and both laws would be wrong by tens of per cent",
             ),
             Self::FewNormals { recording, windows, of } => write!(
                 f,

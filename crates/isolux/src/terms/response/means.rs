@@ -58,8 +58,20 @@ impl AmplitudeStack {
 
     /// Drops every second image.
     pub(crate) fn thin_out(&mut self) {
+        self.retain(|index| index.is_multiple_of(2));
+    }
+
+    /// Makes NaN of the pixels of an image that are `excluded`.
+    pub(crate) fn exclude(&mut self, image: usize, excluded: impl Fn(usize) -> bool) {
+        let pixels = self.shape.pixels();
+        let values = self.amplitude_dn[image * pixels..(image + 1) * pixels].iter_mut().enumerate();
+        values.filter(|(pixel, _)| excluded(*pixel)).for_each(|(_, value)| *value = f32::NAN);
+    }
+
+    /// Keeps the images that are `wanted`.
+    pub(crate) fn retain(&mut self, wanted: impl Fn(usize) -> bool) {
         let (pixels, mut kept) = (self.shape.pixels(), 0);
-        for index in (0..self.integration_time_us.len()).step_by(2) {
+        for index in (0..self.integration_time_us.len()).filter(|index| wanted(*index)) {
             self.integration_time_us[kept] = self.integration_time_us[index];
             self.amplitude_dn.copy_within(index * pixels..(index + 1) * pixels, kept * pixels);
             kept += 1;
