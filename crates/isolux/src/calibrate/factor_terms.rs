@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use super::joint::{self, Factor, JointFit, JointModel, Observation, Refusal};
+use super::joint::{self, Factor, Finding, JointFit, JointModel, Observation, Refusal};
 use crate::advice::Advice;
 use crate::numerics::robust::TUKEY_CUTOFF;
 use crate::terms::{Angle, FitQuality, Profile, Source, Spline, root_mean_square};
@@ -53,6 +53,13 @@ pub enum FactorWarning {
         /// Rank of its reduced normal matrix.
         rank: usize,
     },
+    /// A factor that became a term, but of which errors that the observations of a frame share leave much uncertain.
+    Uncertain {
+        /// The factor.
+        factor: Factor,
+        /// Standard error of its curve, or for the angle of its effect at 60°.
+        standard_error: f64,
+    },
     /// A distance law whose observations do not cover the reference distance.
     ReferenceNotSeen {
         /// Reference, m.
@@ -69,11 +76,22 @@ impl FactorWarning {
         Some(Self::Refused { reason, unknowns: fit.unknowns, rank: fit.rank })
     }
 
+    /// The warnings about factors that are known badly, but not refused.
+    pub(super) fn uncertain(fit: &JointFit) -> impl Iterator<Item = Self> + '_ {
+        let vague =
+            |finding: &&Finding| finding.refusal.is_none() && finding.standard_error > Finding::LARGEST_ERROR;
+        let warning = |finding: &Finding| {
+            let &Finding { factor, standard_error, .. } = finding;
+            Self::Uncertain { factor, standard_error }
+        };
+        fit.findings.iter().filter(vague).map(warning)
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
-            Self::Refused { .. } => None,
+            Self::Refused { .. } | Self::Uncertain { .. } => None,
             Self::ReferenceNotSeen { .. } => Some(Advice::ReferenceDistance { distance_m: None }),
         }
     }
@@ -85,6 +103,13 @@ impl fmt::Display for FactorWarning {
             Self::Refused { reason, unknowns, rank } => {
                 write!(f, "no {reason} (rank {rank} of {unknowns} unknowns)")
             }
+            Self::Uncertain { factor, standard_error } => write!(
+                f,
+                "{}: known to {:.1} % only, because the observations of a frame share their errors: record more frames, \
+                 in other poses",
+                factor.name(),
+                100.0 * standard_error
+            ),
             Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
                 f,
                 "no spline, surfaces were seen from {min_m:.3} to {max_m:.3} m and not at the reference distance of \

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::frame_sums::{FrameSums, Times};
 use crate::calibrate::blocks::{Block, SIDE, around};
+use crate::numerics::differences::DISTANCE_NOISE_SHARE;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
 /// Frames of which parts were left out.
@@ -19,8 +20,6 @@ pub(super) struct Moved {
 const SHIFT_M: f32 = 0.05;
 /// Mean distances are compared beyond this many standard errors.
 const STANDARD_ERRORS: f32 = 6.0;
-/// A block whose distances scatter by more than this share shows nothing but noise.
-const SCATTER_SHARE: f32 = 0.25;
 /// Distances of compressed pixels drift. They are compared while the mean amplitude per time is above this share of
 /// its usual value.
 const LINEAR_SHARE: f64 = 0.7;
@@ -114,7 +113,7 @@ impl<'a> Series<'a> {
     fn elsewhere(&self, block: usize) -> impl Iterator<Item = usize> {
         let reliable = |at: &usize| {
             let block = self.block(*at, block);
-            block.distance_sd_m <= SCATTER_SHARE * block.distance_m
+            block.distance_sd_m <= DISTANCE_NOISE_SHARE as f32 * block.distance_m
         };
         let known: Vec<usize> = (0..self.linear).filter(reliable).collect();
         let mut distances: Vec<f64> =
@@ -150,7 +149,12 @@ impl<'a> Series<'a> {
         let changes = course.windows(2).map(|pair| pair[1] - pair[0]).filter(|change| change.is_finite());
         let sigma = SIGMA_PER_MAD
             * median_absolute_deviation(&mut changes.collect::<Vec<_>>()).unwrap_or(f64::INFINITY);
+        let amplitude = |at: usize| self.ln_amplitude(at, block).exp();
+        let all = (0..course.len()).map(amplitude).filter(|value| value.is_finite());
+        let usual = median(&mut all.collect::<Vec<_>>()).unwrap_or(f64::INFINITY);
         let departs = |at: &usize| {
+            // The relative noise grows as the amplitude falls, at most in proportion.
+            let sigma = sigma * (usual / amplitude(*at)).max(1.0);
             let reach = REACH.min(*at).min(course.len() - 1 - at);
             let near = course[at - reach..=at + reach].iter().copied().filter(|value| value.is_finite());
             let usual = median(&mut near.collect::<Vec<_>>()).unwrap_or(f64::NAN);

@@ -112,8 +112,8 @@ impl<'a> Knowledge<'a> {
             let guilty: Vec<Factor> = others.iter().copied().filter(confounds).collect();
             let with = if guilty.is_empty() { others } else { guilty };
             Some(Refusal::Confounded { factor, with, inflation })
-        } else if too_large(standard_error) {
-            Some(Refusal::Uncertain { factor, standard_error })
+        } else if too_large(error(&others)) {
+            Some(Refusal::Uncertain { factor, standard_error: error(&others) })
         } else {
             None
         };

@@ -39,7 +39,7 @@ pub(in crate::calibrate) fn fit(
     };
     let factors = fit.findings.iter().map(|finding| finding.factor);
     let refused = factors.filter_map(|factor| FactorWarning::refused(&fit, factor));
-    warnings.extend(refused.map(SceneWarning::Factor));
+    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(SceneWarning::Factor));
     let fitted = Fitted {
         observations: &input.observations,
         fit: &fit,

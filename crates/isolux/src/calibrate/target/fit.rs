@@ -16,9 +16,6 @@ use crate::terms::angle::LAMBERT;
 
 /// Factors on the weight of smoothness that are tried.
 const SMOOTHNESS: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
-/// A smoother fit must predict better by this share. Independent errors of ten thousand windows and seventy unknowns
-/// cost 0.3 %; below that, it bends the curves by more than it spares them.
-const MARKEDLY: f64 = 0.005;
 
 /// Fits the terms that the windows determine into `calibration`. Whatever was left out, and why, comes with the report.
 ///
@@ -98,11 +95,11 @@ fn determined(
     }
     let others = [Factor::Time, Factor::Distance, Factor::Profile];
     let refused = others.into_iter().filter_map(|factor| FactorWarning::refused(&fit, factor));
-    warnings.extend(refused.map(TargetWarning::Factor));
+    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(TargetWarning::Factor));
     Ok(fit)
 }
 
-/// The smoothness that predicts frames best that are left out; of about equals, the least. The windows of one frame share
+/// The smoothness that predicts frames best that are left out; of equals, the least. The windows of one frame share
 /// the errors of its pose, so that independent errors, for which 1 is right, are the exception.
 fn smoothness(input: &JointInput) -> f64 {
     let tried = SMOOTHNESS.map(|smoothness| {
@@ -112,6 +109,6 @@ fn smoothness(input: &JointInput) -> f64 {
     });
     tried
         .into_iter()
-        .reduce(|best, next| if next.1 < (1.0 - MARKEDLY) * best.1 { next } else { best })
+        .reduce(|best, next| if next.1 < best.1 { next } else { best })
         .map_or(1.0, |best| best.0)
 }

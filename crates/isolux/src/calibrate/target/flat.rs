@@ -20,6 +20,9 @@ const LEAST_WINDOWS: usize = 4;
 const EXPECTED_SCALE: f64 = 2.0;
 /// Nor matters less than this share of the distance: it moves ln A by a fifth of a percent.
 const HARMLESS: f64 = 0.001;
+/// Distances whose noise is a smaller share of them give good normals in every window. Those follow the errors that the
+/// camera's distances have over the image, as the normals of other scenes will, and a plane does not.
+const NOISY: f64 = 0.005;
 /// Rounds with Huber's weights, which have one solution, and all.
 const START_ROUNDS: usize = 5;
 const ROUNDS: usize = 30;
@@ -61,6 +64,11 @@ impl FlatLabel {
             return None;
         }
         let (inverse, scale) = settle(&pixels)?;
+        let middle = |of: fn(&Pixel) -> f64| median(&mut pixels.iter().map(of).collect::<Vec<_>>());
+        let noise_m = scale / middle(|pixel| pixel.amplitude_dn)?;
+        if noise_m < NOISY * middle(|pixel| pixel.distance_m)? {
+            return None;
+        }
         let flat = Self { inverse, intrinsics: *intrinsics };
         let mut deviations: Vec<f64> = mine()
             .filter_map(|&(row, column)| {
@@ -198,6 +206,7 @@ mod tests {
             time_us: 1000.0,
             ln_amplitude: 100f32.ln(),
             distance_m: f32::NAN,
+            measured_m: f32::NAN,
             pixel: [12, 60],
             cosine: f32::NAN,
             scatter: 0.1,

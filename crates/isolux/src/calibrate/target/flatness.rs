@@ -31,12 +31,12 @@ const FLATTER: f64 = 1.25;
 pub(super) fn curved(target: &TargetWindows) -> Option<Curved> {
     let intrinsics = target.intrinsics?;
     let mut faces: BTreeMap<(u32, u8), Vec<[f64; 3]>> = BTreeMap::new();
-    for window in target.windows.iter().filter(|window| window.distance_m > 0.0) {
+    for window in target.windows.iter().filter(|window| window.measured_m > 0.0) {
         let [row, column] = window.pixel.map(f64::from);
         faces.entry((window.frame, window.label)).or_default().push([
             row,
             column,
-            f64::from(window.distance_m),
+            f64::from(window.measured_m),
         ]);
     }
     faces.retain(|_, face| face.len() >= LEAST_WINDOWS);

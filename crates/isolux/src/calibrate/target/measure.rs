@@ -20,6 +20,8 @@ pub(super) struct WindowMedians {
     pub(super) ln_amplitude: f32,
     /// m; NaN where the recording has none.
     pub(super) distance_m: f32,
+    /// The median of its own distances, m, also where the label is flat and `distance_m` is that of its plane.
+    pub(super) measured_m: f32,
     /// Row and column of the middle.
     pub(super) pixel: [u16; 2],
     /// NaN where it is not known.
@@ -78,6 +80,7 @@ pub(super) fn measure(frame: &Frame, target: &Plane<u8>, corner: (usize, usize))
         time_us: time_us.unwrap_or(f32::NAN),
         ln_amplitude: ln_amplitude as f32,
         distance_m: distance_m as f32,
+        measured_m: distance_m as f32,
         pixel: [middle(corner.0), middle(corner.1)],
         cosine: f32::NAN,
         scatter: scatter as f32,

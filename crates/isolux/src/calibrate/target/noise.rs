@@ -121,6 +121,7 @@ mod tests {
             time_us,
             ln_amplitude,
             distance_m,
+            measured_m: distance_m,
             pixel: [2; 2],
             cosine,
             scatter,

@@ -61,6 +61,7 @@ impl TargetWarning {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Curved { .. } => Severity::Poor,
+            Self::Factor(FactorWarning::Uncertain { .. }) => Severity::Doubt,
             Self::Glossy { .. } | Self::Factor(_) => Severity::Note,
             _ => Severity::Doubt,
         }
