@@ -12,7 +12,7 @@
 //! deviation of about 1, that of the profile's tensor about 0.5 per squared half
 //! diagonal. The weight against the observations follows from their own σ.
 //!
-//! Errors of the factors are those of a fit whose observations share errors within their frame ([`Observation::frame`]).
+//! Errors of the factors are those of a fit whose observations share errors within their frame (`Observation::frame`).
 //!
 //! A recording need not determine every factor. A [`Finding`] says how well the observations determine
 //! each factor, and why a factor is refused. The numbers of a refused factor are withheld.
