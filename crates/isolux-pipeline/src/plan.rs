@@ -14,7 +14,8 @@ use crate::remark::Remark;
 use crate::source::FrameSource;
 
 /// Plans the chain for a recording. Where the standard deviation is required and the noise is unknown, the
-/// recording is read once to estimate it; where the response needs the ambient light, some frames are read. The observer receives the notes of the plan as remarks.
+/// recording is read once to estimate it; where the response needs the ambient light, some frames are read. The
+/// observer receives the notes of the plan as remarks.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.

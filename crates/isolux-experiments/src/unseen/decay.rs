@@ -87,7 +87,7 @@ pub fn measure(
         }
     }
     let simulation = Simulation::new(cropped(&held_out.model), scene, MEASURED)?;
-    let light = light::estimate(&held_out.from_amplitude, &simulation)?;
+    let light = light::estimate(&held_out.from_amplitude, &simulation, light::poses(&simulation))?;
     let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out, light.as_ref())?.stream());
     let mut streams: Vec<Stream> = chains.iter().map(plan).collect::<Result<_, _>>()?;
     // Keyed by pose and time; for each chain the sum and number of the frames' means.

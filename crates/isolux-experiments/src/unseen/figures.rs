@@ -62,11 +62,16 @@ fn decays(cameras: &[HeldOut]) -> Result<Vec<Figure>, ExperimentError> {
         Figure::new("distance", what, cv, Unit::Percent, aim)
     };
     let mut figures: Vec<Figure> = chains::ALL.iter().enumerate().map(figure).collect();
-    for (ambient, most, least) in
-        [(Ambient::Same, 0.008, 0.8), (Ambient::Dark, 0.01, 0.8), (Ambient::Threefold, 0.01, 0.65)]
-    {
-        let measured = measure(ambient, &[chains::FROM_AMPLITUDE])?;
-        let worst = |value: fn(&Decay) -> f64| measured.iter().flatten().map(value);
+    let of_amplitude = chains::ALL.iter().position(|chain| *chain == chains::FROM_AMPLITUDE);
+    let same = measured.iter().filter_map(|decays| decays.get(of_amplitude?).copied()).collect();
+    let of_light =
+        |ambient| Ok::<Vec<Decay>, ExperimentError>(measure(ambient, &[chains::FROM_AMPLITUDE])?.concat());
+    for (ambient, measured, most, least) in [
+        (Ambient::Same, same, 0.008, 0.8),
+        (Ambient::Dark, of_light(Ambient::Dark)?, 0.01, 0.8),
+        (Ambient::Threefold, of_light(Ambient::Threefold)?, 0.01, 0.65),
+    ] {
+        let worst = |value: fn(&Decay) -> f64| measured.iter().map(value);
         let (cv, share) = (largest(worst(|decay| decay.cv)), smallest(worst(Decay::share)));
         let what = format!("the same from amplitude and distance alone, {}", ambient.describe());
         let positions = format!("{what}: share of the positions, the rest is flagged, worst camera");

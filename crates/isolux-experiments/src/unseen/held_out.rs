@@ -3,11 +3,12 @@
 
 use isolux::Calibration;
 use isolux::calibrate::CalibrateSettings;
+use isolux::terms::response::AmbientResponse;
 use isolux_camera::scene::run::RegisterRange;
 use isolux_camera::{CameraModel, Scene, Simulation};
 use isolux_pipeline::calibrate::measure;
 use isolux_pipeline::simulate::SimulatedFrames;
-use isolux_pipeline::{CalibrationSources, Unobserved};
+use isolux_pipeline::{CalibrationSources, FrameSource, Unobserved, calibrate};
 
 use crate::error::ExperimentError;
 
@@ -37,12 +38,9 @@ impl HeldOut {
     /// [`ExperimentError`], which no seed should bring about.
     pub fn new(seed: u64) -> Result<Self, ExperimentError> {
         let model = CameraModel::random(seed);
-        let settings = CalibrateSettings {
-            modulation_frequency_hz: Some(model.modulation_frequency_hz),
-            ..CalibrateSettings::default()
-        };
+        let settings = settings(&model);
         let wall = Simulation::new(model.clone(), wall_scene(&model)?, FITTED)?;
-        let board = Simulation::new(cropped(&model), Scene::builtin("board-distances")?, FITTED)?;
+        let board = board(&model)?;
         let sources = CalibrationSources {
             exposure_sweeps: vec![Box::new(SimulatedFrames::new(&wall))],
             distance_sweeps: vec![Box::new(SimulatedFrames::new(&board))],
@@ -54,6 +52,30 @@ impl HeldOut {
         let (calibration, _) = measured.fit(name, &Unobserved)?;
         Ok(Self { model, calibration, from_amplitude })
     }
+}
+
+/// The response of camera `seed` by amplitude and distance, which the board alone determines.
+///
+/// # Errors
+/// [`ExperimentError`], which no seed should bring about.
+pub(super) fn ambient(seed: u64) -> Result<Option<AmbientResponse>, ExperimentError> {
+    let model = CameraModel::random(seed);
+    let board = board(&model)?;
+    let distance_sweeps: Vec<Box<dyn FrameSource + '_>> = vec![Box::new(SimulatedFrames::new(&board))];
+    let sources = CalibrationSources { distance_sweeps, ..CalibrationSources::default() };
+    let (calibration, _) = calibrate(&settings(&model), None, sources, &Unobserved)?;
+    Ok(calibration.terms.response.and_then(|response| response.ambient))
+}
+
+fn settings(model: &CameraModel) -> CalibrateSettings {
+    CalibrateSettings {
+        modulation_frequency_hz: Some(model.modulation_frequency_hz),
+        ..CalibrateSettings::default()
+    }
+}
+
+fn board(model: &CameraModel) -> Result<Simulation, ExperimentError> {
+    Ok(Simulation::new(cropped(model), Scene::builtin("board-distances")?, FITTED)?)
 }
 
 /// The wall at about fifty times of the camera's register.

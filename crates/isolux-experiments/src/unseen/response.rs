@@ -4,7 +4,7 @@
 mod exposures;
 mod stack;
 
-use isolux::calibrate::{self, AmbientSurvey, CalibrateSettings, ExposureSweep};
+use isolux::calibrate::{self, CalibrateSettings, ExposureSweep};
 use isolux::standardize::{AmbientLight, DistanceStep, SpecularStep, TimeStep};
 use isolux::terms::response::ResponseTier;
 use isolux::{
@@ -12,7 +12,7 @@ use isolux::{
 };
 use isolux_camera::{SimulatedFrame, Simulation};
 
-use super::held_out::HeldOut;
+use super::{held_out, light};
 use crate::error::ExperimentError;
 use crate::measure::time_us;
 use exposures::{camera_of, for_each, longest_us, simulation};
@@ -59,7 +59,7 @@ const SPAN: f64 = 8.0;
 /// Frames of each exposure that is fitted on.
 const FITTED_FRAMES: u32 = 32;
 /// Frames of each exposure that the ambient light is estimated from.
-const SURVEYED_FRAMES: u32 = 4;
+const SURVEYED_FRAMES: usize = 4;
 const METHODS: [(&str, TimeStep, Option<ResponseTier>); 8] = [
     ("lut", TimeStep::Lut, None),
     ("linear", TimeStep::Linear, None),
@@ -95,10 +95,12 @@ pub fn measure(
     let sweep = simulation(scene, &model, light, &fitted_times, (FITTED_FRAMES, 2 * camera))?;
     let mut calibration = calibrate(&sweep, &fitted_times)?;
     if let Some(response) = &mut calibration.terms.response {
-        response.ambient = HeldOut::new(camera)?.from_amplitude.terms.response.and_then(|r| r.ambient);
+        response.ambient = held_out::ambient(camera)?;
     }
     let tested = simulation("office-desk", &model, light, &tested_times, (TEST_FRAMES, 2 * camera + 1))?;
-    let ambient_light = ambient_light(&calibration, &tested)?;
+    let exposures = (0..tested.len()).step_by(TEST_FRAMES as usize);
+    let surveyed = exposures.map(|first| first..(first + SURVEYED_FRAMES).min(tested.len()));
+    let ambient_light = light::estimate(&calibration, &tested, surveyed)?;
     let fitted = |tier| match (tier, &calibration.terms.response) {
         (None, _) => true,
         (Some(ResponseTier::Pixel), Some(response)) => {
@@ -149,25 +151,6 @@ fn plan(
         | Channels::PHASE_SAMPLES;
     let traits = RecordingTraits { ambient_light: ambient_light.clone(), ..channels.into() };
     Ok(Standardizer::plan(&choice, Some(calibration), traits)?)
-}
-
-/// The ambient light by the noise of the first frames of each exposure.
-fn ambient_light(
-    calibration: &Calibration,
-    tested: &Simulation,
-) -> Result<Option<AmbientLight>, ExperimentError> {
-    let response = calibration.terms.response.as_ref().and_then(|response| response.ambient.as_ref());
-    let Some(response) = response else { return Ok(None) };
-    let mut survey = AmbientSurvey::new(response);
-    let mut out = SimulatedFrame::new(tested.shape());
-    for exposure in (0..tested.len()).step_by(TEST_FRAMES as usize) {
-        survey.part(exposure);
-        for index in exposure..(exposure + SURVEYED_FRAMES as usize).min(tested.len()) {
-            tested.render_frame(index, &mut out)?;
-            survey.push(&out.frame);
-        }
-    }
-    Ok(survey.finish().ok())
 }
 
 /// The reference time is one of the sweep's in the middle, which every camera's table covers. The sweep is measured here

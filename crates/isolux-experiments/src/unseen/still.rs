@@ -48,7 +48,7 @@ pub fn measure(held_out: &HeldOut, chains: &[Chain]) -> Result<StillScene, Exper
         run.integration_times_us = TIMES_US.to_vec();
     }
     let simulation = Simulation::new(held_out.model.clone(), scene, MEASURED)?;
-    let light = light::estimate(&held_out.from_amplitude, &simulation)?;
+    let light = light::estimate(&held_out.from_amplitude, &simulation, light::poses(&simulation))?;
     let plan = |chain: &Chain| Ok::<Stream, ExperimentError>(chain.plan(held_out, light.as_ref())?.stream());
     let mut streams: Vec<Stream> = chains.iter().map(plan).collect::<Result<_, _>>()?;
     let shape = simulation.shape();

@@ -15,8 +15,8 @@ const FRAMES: usize = 32;
 /// Frames that follow each other, so that differences between them show the noise.
 const RUN: usize = 4;
 
-/// The light that the noise of the amplitudes tells. `None`, with a remark, where it does not tell it, or where the
-/// source cannot be read twice.
+/// The light that the noise of the amplitudes tells. `None` where it does not tell it, with a remark, and where the source
+/// may be one that cannot be read twice.
 pub(super) fn estimate(
     response: &AmbientResponse,
     source: &mut dyn FrameSource,

@@ -19,6 +19,11 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// Mean of the valid amplitudes, DN; NaN without one.
+    pub(super) fn mean_dn(&self) -> f64 {
+        f64::from(self.sum_dn) / f64::from(self.count)
+    }
+
     /// Standard error of the mean distance, m.
     pub(super) fn distance_error_m(&self) -> f32 {
         self.distance_sd_m / (self.count.max(1) as f32).sqrt()

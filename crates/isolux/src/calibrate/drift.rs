@@ -2,7 +2,7 @@
 //! one time or position to the next, or starts anew as when the camera settles, is told by parts of the image that
 //! should be equal, or grow in proportion to the time.
 
-use crate::frame::{Frame, PixelFlags};
+use crate::frame::Frame;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
 /// Compares consecutive frames that should be equal.
@@ -31,9 +31,7 @@ const LEAST_PAIRS: usize = 5;
 impl DriftWatch {
     /// Takes a frame; `equal` states that it should be equal to the one before.
     pub(super) fn push(&mut self, number: usize, frame: &Frame, equal: bool) {
-        let excluded = PixelFlags::INVALID | PixelFlags::SATURATED;
-        let values = frame.amplitude.values().iter().zip(frame.flags.values());
-        let now = values.map(|(&value, flags)| if flags.intersects(excluded) { f32::NAN } else { value });
+        let now = frame.counted_amplitudes();
         let mut sums = (0.0, 0.0);
         if equal && self.last.len() == frame.shape().pixels() {
             for (before, now) in self.last.iter_mut().zip(now) {

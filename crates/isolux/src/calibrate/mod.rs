@@ -33,6 +33,7 @@ pub mod scene;
 mod settings;
 mod severity;
 mod smooth_curve;
+mod stray;
 mod sweep_fault;
 mod sweep_frames;
 mod target;

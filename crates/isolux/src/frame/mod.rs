@@ -128,6 +128,13 @@ impl Frame {
     pub fn is_valid(&self, index: usize) -> bool {
         !self.flags.values()[index].contains(PixelFlags::INVALID)
     }
+
+    /// The amplitudes, DN; NaN for INVALID and SATURATED pixels, which do not count.
+    pub(crate) fn counted_amplitudes(&self) -> impl Iterator<Item = f32> + '_ {
+        let excluded = PixelFlags::INVALID | PixelFlags::SATURATED;
+        let values = self.amplitude.values().iter().zip(self.flags.values());
+        values.map(move |(&value, flags)| if flags.intersects(excluded) { f32::NAN } else { value })
+    }
 }
 
 #[cfg(test)]

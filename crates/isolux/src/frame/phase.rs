@@ -44,6 +44,16 @@ pub fn amplitude(bins: [f32; 4]) -> f32 {
     0.5 * (cosine * cosine + sine * sine).sqrt()
 }
 
+/// Phase of a radial distance (m), not wrapped: `4π f d / c`, rad.
+pub(crate) fn of_distance(modulation_frequency_hz: f64, distance_m: f64) -> f64 {
+    4.0 * std::f64::consts::PI * modulation_frequency_hz * distance_m / SPEED_OF_LIGHT_M_PER_S
+}
+
+/// Distance of a phase of 1 rad, `c / 4π f`, m.
+pub(crate) fn metres_per_radian(modulation_frequency_hz: f64) -> f64 {
+    SPEED_OF_LIGHT_M_PER_S / (4.0 * std::f64::consts::PI * modulation_frequency_hz)
+}
+
 /// Radial distance in metres, `c φ / 4π f` with `φ = atan2(A2−A4, A1−A3) mod 2π`, in 0..`c/2f`.
 #[must_use]
 pub fn distance_m(bins: [f32; 4], modulation_frequency_hz: f64, reversed: bool) -> f32 {

@@ -18,7 +18,7 @@ const LARGEST_DAMPING: f64 = 1e10;
 #[derive(Clone, Debug)]
 pub(crate) struct Fitted {
     pub(crate) parameters: Vec<f64>,
-    /// `Σ ρ(r)`, see [`cost`].
+    /// Sum of [`soft_loss`] over the residuals.
     pub(crate) cost: f64,
 }
 
@@ -56,11 +56,16 @@ pub(crate) fn least_squares(start: &[f64], residuals: impl Fn(&[f64], &mut Vec<f
     Some(Fitted { parameters, cost: least })
 }
 
-/// `Σ 2 s² (√(1 + r²/s²) − 1)`, s = [`SOFT_SIGMAS`]: the square of small residuals, the size of large ones. `None` where
-/// it is not finite.
-fn cost(residuals: &[f64]) -> Option<f64> {
+/// Soft-L1 loss of a residual in standard deviations, `2 s² (√(1 + r²/s²) − 1)`, s = [`SOFT_SIGMAS`]: the square of a
+/// small one, the size of a large one.
+pub(crate) fn soft_loss(residual: f64) -> f64 {
     let square = SOFT_SIGMAS * SOFT_SIGMAS;
-    let sum: f64 = residuals.iter().map(|r| 2.0 * square * ((1.0 + r * r / square).sqrt() - 1.0)).sum();
+    2.0 * square * ((1.0 + residual * residual / square).sqrt() - 1.0)
+}
+
+/// The sum of the losses; `None` where it is not finite.
+fn cost(residuals: &[f64]) -> Option<f64> {
+    let sum: f64 = residuals.iter().copied().map(soft_loss).sum();
     sum.is_finite().then_some(sum)
 }
 

@@ -28,6 +28,16 @@ pub struct AmplitudeNoise {
     pub ambient_variance_dn2_per_us: f64,
 }
 
+impl AmplitudeNoise {
+    /// Variance (DN²) of an amplitude (DN) at an integration time (µs; 0 where it is unknown).
+    #[must_use]
+    pub fn variance_dn2(&self, amplitude_dn: f64, time_us: f64) -> f64 {
+        self.read_variance_dn2
+            + self.shot_variance_dn2_per_dn * amplitude_dn
+            + self.ambient_variance_dn2_per_us * time_us
+    }
+}
+
 /// Variance of an amplitude by the intensity, which holds all light: `read + shot · intensity`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

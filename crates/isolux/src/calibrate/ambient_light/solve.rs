@@ -2,7 +2,7 @@
 
 use crate::calibrate::grouped_noise::GroupNoise;
 use crate::numerics::minimum::minimum;
-use crate::numerics::nonlinear::least_squares;
+use crate::numerics::nonlinear::{least_squares, soft_loss};
 use crate::numerics::statistics::median;
 use crate::terms::response::AmbientResponse;
 
@@ -50,8 +50,6 @@ const LEAST_SNR: f64 = 5.0;
 const ROBUST_ERROR: f64 = 1.4;
 /// ...and that of the model beside it.
 const MODEL_ERROR: f64 = 0.03;
-/// Residuals beyond this many errors count less and less: texture and movement only add noise.
-const SOFT_ERRORS: f64 = 2.0;
 /// Lights from 0 to 100 times the amplitude of the target: `B = 0.02 K sinh(x)`.
 const SCALE: f64 = 0.02;
 const LARGEST: f64 = 9.2;
@@ -97,7 +95,8 @@ pub(super) fn solve(
             .iter()
             .map(move |group| group.residual(response, light * (growth * group.radius_squared).exp()))
     };
-    let cost = |at: [f64; 2]| residuals(at).map(soft).sum::<f64>();
+    // Texture and movement only add noise.
+    let cost = |at: [f64; 2]| residuals(at).map(soft_loss).sum::<f64>();
     let known = growth.unwrap_or(0.0);
     let mut best = [minimum([0.0, LARGEST], |x| cost([x, known])), known];
     if growth.is_none() {
@@ -134,11 +133,6 @@ pub(super) fn solve(
         return Err(AmbientUnknown::Vague { error: relative });
     }
     Ok(Light { dn_per_us, error_dn_per_us, growth: best[1] })
-}
-
-fn soft(residual: f64) -> f64 {
-    let square = SOFT_ERRORS * SOFT_ERRORS;
-    2.0 * square * ((1.0 + residual * residual / square).sqrt() - 1.0)
 }
 
 /// Pixels of like amplitude, distance and place.

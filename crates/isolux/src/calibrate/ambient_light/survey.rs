@@ -1,7 +1,6 @@
 //! Measures the noise of a recording in groups of like amplitude, distance and place.
 
 use super::solve::{AmbientUnknown, Group, Light, solve};
-use crate::calibrate::exposure::counted_amplitudes;
 use crate::calibrate::grouped_noise::{Compared, GroupedNoise};
 use crate::denoise::{DenoiseRule, Denoiser};
 use crate::frame::{Frame, IntegrationTime, Plane, Shape};
@@ -104,7 +103,7 @@ impl AmbientSurvey {
         };
         let light = denoised.iter().map(target).collect();
         let class = self.rings.values().to_vec();
-        let amplitude = counted_amplitudes(frame);
+        let amplitude = frame.counted_amplitudes().collect();
         self.current.push(frame.shape(), Compared { amplitude, light: Some(light), class });
         self.previous = Some((time_us, distance_m.values().to_vec()));
     }

@@ -63,8 +63,7 @@ fn change(before: &[Block], now: &[Block]) -> Option<f64> {
             && shift_m <= SHIFT_M + STANDARD_ERRORS * error_m
             && 10 * a.count.min(b.count) > 9 * a.count.max(b.count)
     };
-    let mean = |block: &Block| f64::from(block.sum_dn) / f64::from(block.count);
-    let ratios = before.iter().zip(now).filter(stays).map(|(a, b)| (mean(b) / mean(a)).ln());
+    let ratios = before.iter().zip(now).filter(stays).map(|(a, b)| (b.mean_dn() / a.mean_dn()).ln());
     let mut ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
     if ratios.len() < LEAST_BLOCKS { None } else { median(&mut ratios) }
 }

@@ -19,8 +19,6 @@ pub(super) struct Measurement {
     pub(super) distance_error_m: f64,
     /// Mean amplitude.
     pub(super) amplitude_dn: f64,
-    /// Standard error of the mean amplitude.
-    pub(super) amplitude_error_dn: f64,
     /// Mean amplitude over its noise.
     pub(super) signal_to_noise: f64,
     /// Pixels that were averaged.
@@ -35,6 +33,11 @@ impl Measurement {
     pub(super) fn tilt(&self) -> f64 {
         let significant = self.spread_m > STANDARD_ERRORS * 4.0 * self.distance_error_m;
         if significant { self.spread_m / self.distance_m } else { 0.0 }
+    }
+
+    /// Standard error of the mean amplitude, relative.
+    pub(super) fn amplitude_error(&self) -> f64 {
+        1.0 / (self.signal_to_noise * self.pixels.sqrt())
     }
 
     pub(super) fn is_reliable(&self) -> bool {
@@ -61,14 +64,13 @@ pub(super) fn measure(frame: &Frame, distances_m: &[f32], window_px: usize) -> O
         differences::spatial(values.chunks(window.width)).unwrap_or(f64::INFINITY)
     };
     let (amplitude_dn, distance_m) = (mean(&amplitudes), mean(&distances));
-    let (distance_sd_m, amplitude_sd_dn) = (deviation(&distances), deviation(&amplitudes));
+    let distance_sd_m = deviation(&distances);
     Some(Measurement {
         distance_m,
         distance_sd_m,
         distance_error_m: distance_sd_m / (count as f64).sqrt(),
         amplitude_dn,
-        amplitude_error_dn: amplitude_sd_dn / (count as f64).sqrt(),
-        signal_to_noise: amplitude_dn / amplitude_sd_dn,
+        signal_to_noise: amplitude_dn / deviation(&amplitudes),
         pixels: count as f64,
         spread_m: slope_spread(&distances, window),
     })

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::background::Background;
 use super::decay::{Position, Positions};
 use super::step::{Point, step};
-use super::stray::Stray;
 use super::wrap::wrapped;
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::drift::{DriftWatch, is_proven};
 use crate::calibrate::lag::{Level, lag};
 use crate::calibrate::severity::DOUBTFUL_SHARE;
+use crate::calibrate::stray::Stray;
 use crate::calibrate::sweep_fault::SweepFault;
 use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 

@@ -1,55 +1,20 @@
 //! Frames that contradict their repeats, and positions that contradict their neighbours.
 
+use super::centre::Measurement;
 use super::decay::{Position, Positions};
 use crate::calibrate::smooth_curve::{departure, expected};
+use crate::calibrate::stray::{DEVIATIONS, LEAST_DEPARTURE, Stray, few_off, is_disputed, wrong_of_two};
 use crate::numerics::statistics::median;
 
-/// Frames or positions of one integration time that were left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stray {
-    /// Number of them.
-    pub(super) count: usize,
-    /// A frame of the one that departs most.
-    pub(super) worst: usize,
-    /// By how much, relative.
-    pub(super) departure: f64,
-}
-
-/// A frame may differ from its repeats by this share; half of it is all that one of two frames adds to an error.
-const LEAST_DEPARTURE: f64 = 0.05;
-/// ... or by this many standard deviations of the window's mean.
-const DEVIATIONS: f64 = 8.0;
 /// A position may depart from its neighbours by this share: the curve bends, where it saturates.
 const LEAST_BEND: f64 = 0.15;
 /// ... the nearest and the farthest, which have neighbours on one side only, by this.
 const LEAST_BEND_AT_AN_END: f64 = 0.5;
 
-impl Stray {
-    fn of(found: impl Iterator<Item = (usize, f64)>) -> Option<Self> {
-        let worse = |worst: Self, next: Self| {
-            let count = worst.count + next.count;
-            let larger = next.departure.abs() > worst.departure.abs();
-            Self { count, ..if larger { next } else { worst } }
-        };
-        found.map(|(worst, departure)| Self { count: 1, worst, departure: departure.exp_m1() }).reduce(worse)
-    }
-
-    /// The two together.
-    pub(super) fn and(self, other: Self) -> Self {
-        let larger = other.departure.abs() > self.departure.abs();
-        Self { count: self.count + other.count, ..if larger { other } else { self } }
-    }
-}
-
 impl Position {
     /// ln of the amplitude times the square of the distance, which changes little from position to position.
-    fn ln_level(&self, index: usize) -> f64 {
-        let measurement = &self.measurements[index];
-        measurement.amplitude_dn.ln() + 2.0 * measurement.distance_m.ln()
-    }
-
     fn ln_levels(&self) -> Vec<f64> {
-        (0..self.measurements.len()).map(|index| self.ln_level(index)).collect()
+        self.measurements.iter().map(|m| m.amplitude_dn.ln() + 2.0 * m.distance_m.ln()).collect()
     }
 
     /// Where it lies on the curve of its time: ln d, ln A d².
@@ -59,25 +24,22 @@ impl Position {
 
     /// By how much its frames may differ, in ln.
     fn tolerance(&self) -> f64 {
-        LEAST_DEPARTURE.max(DEVIATIONS * self.mean(|m| m.amplitude_error_dn / m.amplitude_dn))
+        LEAST_DEPARTURE.max(DEVIATIONS * self.mean(Measurement::amplitude_error))
     }
 
     /// Two frames that differ: only other positions tell which is right.
     fn is_disputed(&self) -> bool {
-        self.measurements.len() == 2 && (self.ln_level(0) - self.ln_level(1)).abs() > self.tolerance()
+        is_disputed(&self.ln_levels(), self.tolerance())
     }
 
     /// Frames to leave out, by their place in the position, and by how much they depart.
     fn stray(&self, curve: &[(f64, f64)]) -> Vec<(usize, f64)> {
+        let levels = self.ln_levels();
         if self.is_disputed() {
-            let Some(level) = expected(curve, self.place().0) else { return Vec::new() };
-            let wrong = usize::from((self.ln_level(0) - level).abs() < (self.ln_level(1) - level).abs());
-            return vec![(wrong, self.ln_level(wrong) - self.ln_level(1 - wrong))];
+            let expected = expected(curve, self.place().0);
+            return expected.map(|level| wrong_of_two(&levels, level)).into_iter().collect();
         }
-        let (middle, tolerance) = (self.place().1, self.tolerance());
-        let departures = self.ln_levels().into_iter().map(|level| level - middle).enumerate();
-        let off: Vec<(usize, f64)> = departures.filter(|(_, off)| off.abs() > tolerance).collect();
-        if 2 * off.len() < self.measurements.len() { off } else { Vec::new() }
+        few_off(&levels, self.place().1, self.tolerance())
     }
 }
 

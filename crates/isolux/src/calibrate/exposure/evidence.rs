@@ -168,9 +168,8 @@ impl Run {
     fn add(&mut self, frame: &Frame) {
         let unusable = PixelFlags::INVALID | PixelFlags::SATURATED;
         self.frames += 1.0;
-        let values = frame.amplitude.values().iter().zip(frame.flags.values());
-        for (sum, (&amplitude, flags)) in self.amplitudes.iter_mut().zip(values) {
-            *sum += if flags.intersects(unusable) { f64::NAN } else { f64::from(amplitude) };
+        for (sum, amplitude) in self.amplitudes.iter_mut().zip(frame.counted_amplitudes()) {
+            *sum += f64::from(amplitude);
         }
         let pixels = frame.shape().pixels();
         for (sums, index) in self.sampled.iter_mut().zip(sampled(pixels)) {

@@ -22,7 +22,7 @@ pub(super) fn faults(
     let Cleaned { stray, moved } = curve.clean();
     let stray = stray.map(|stray| SweepFault::StrayFrames {
         recording: recording(),
-        frames: stray.frames,
+        frames: stray.count,
         worst: stray.worst,
         departure: stray.departure,
     });

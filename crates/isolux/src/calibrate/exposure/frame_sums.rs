@@ -24,6 +24,15 @@ pub(super) struct FrameSums {
 /// All frames by their time, and in the order of recording within a time.
 pub(super) type Times = BTreeMap<u64, Vec<FrameSums>>;
 
+/// The frames that count, each with its time (µs), in the order of times.
+pub(super) fn kept(times: &Times) -> Vec<(f64, &FrameSums)> {
+    times
+        .iter()
+        .flat_map(|(&bits, frames)| frames.iter().map(move |frame| (f64::from_bits(bits), frame)))
+        .filter(|(_, frame)| !frame.stray)
+        .collect()
+}
+
 impl FrameSums {
     /// Pixels that enter the mean.
     pub(super) fn count(&self, dead: usize) -> usize {

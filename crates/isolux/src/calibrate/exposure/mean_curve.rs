@@ -3,6 +3,7 @@
 use super::frame_sums::{FrameSums, Times};
 use super::{moved, stray};
 use crate::calibrate::blocks::blocks;
+use crate::calibrate::stray::Stray;
 use crate::frame::{Frame, PixelFlags};
 use crate::terms::lut::ExposureSample;
 use crate::terms::root_mean_square;
@@ -24,7 +25,7 @@ struct PixelHistory {
 /// What was left out of a sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cleaned {
-    pub(super) stray: Option<stray::Stray>,
+    pub(super) stray: Option<Stray>,
     pub(super) moved: Option<moved::Moved>,
 }
 

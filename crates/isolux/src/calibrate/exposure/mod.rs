@@ -17,7 +17,6 @@ mod warning;
 
 pub use evidence::ResponseEvidence;
 pub(super) use fit::{TableError, fit};
-pub(super) use noise_survey::counted_amplitudes;
 pub use noise_survey::{NoiseCells, NoiseSurvey};
 pub use sweep::{ExposureCurve, ExposureSweep};
 pub(super) use tiers::fit_response;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::frame_sums::{FrameSums, Times};
+use super::frame_sums::{FrameSums, Times, kept};
 use crate::calibrate::blocks::{Block, SIDE, around};
 use crate::numerics::differences::DISTANCE_NOISE_SHARE;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
@@ -35,11 +35,7 @@ const MOST_SHARE: f64 = 0.6;
 /// Marks what moved and fills in what those parts of the image would have shown, by their share of the rest at the
 /// nearest times before and after. `None` where nothing moved, or too much.
 pub(super) fn fill_in(times: &mut Times) -> Option<Moved> {
-    let frames: Vec<(f64, &FrameSums)> = times
-        .iter()
-        .flat_map(|(&bits, frames)| frames.iter().map(move |frame| (f64::from_bits(bits), frame)))
-        .filter(|(_, frame)| !frame.stray)
-        .collect();
+    let frames = kept(times);
     let series = Series::new(&frames)?;
     let moved = series.moved();
     let share = |blocks: &Vec<usize>| blocks.len() as f64 / series.used.max(1) as f64;
@@ -138,8 +134,7 @@ impl<'a> Series<'a> {
     }
 
     fn ln_amplitude(&self, at: usize, block: usize) -> f64 {
-        let block = self.block(at, block);
-        (f64::from(block.sum_dn) / f64::from(block.count)).ln()
+        self.block(at, block).mean_dn().ln()
     }
 
     /// Frames in which the amplitude of a block departs from its course over the neighbouring frames.

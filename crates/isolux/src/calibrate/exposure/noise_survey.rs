@@ -5,7 +5,7 @@
 mod tests;
 
 use crate::calibrate::grouped_noise::{Compared, GroupNoise, GroupedNoise};
-use crate::frame::{Frame, IntegrationTime, PixelFlags};
+use crate::frame::{Frame, IntegrationTime};
 use crate::terms::noise::NoiseCell;
 use crate::terms::{Noise, Source};
 
@@ -55,7 +55,7 @@ impl NoiseSurvey {
         if frame.check_shapes().is_err() {
             return self.interrupt();
         }
-        let amplitude = counted_amplitudes(frame);
+        let amplitude: Vec<f32> = frame.counted_amplitudes().collect();
         let whole = |value: &f32| value.is_nan() || value.fract() == 0.0;
         self.whole_numbers &= amplitude.iter().all(whole);
         let class = match &frame.integration_time_us {
@@ -75,15 +75,6 @@ impl NoiseSurvey {
         let quantization_variance_dn2 = if self.whole_numbers { 1.0 / 12.0 } else { 0.0 };
         NoiseCells { cells, spatial, quantization_variance_dn2 }
     }
-}
-
-/// The amplitudes of a frame; NaN for INVALID and SATURATED pixels.
-pub(in crate::calibrate) fn counted_amplitudes(frame: &Frame) -> Vec<f32> {
-    let excluded = PixelFlags::INVALID | PixelFlags::SATURATED;
-    let counted = |(&value, flags): (&f32, &PixelFlags)| {
-        if flags.intersects(excluded) { f32::NAN } else { value }
-    };
-    frame.amplitude.values().iter().zip(frame.flags.values()).map(counted).collect()
 }
 
 /// A group whose class is the integration time and whose light is the intensity, where these are known.

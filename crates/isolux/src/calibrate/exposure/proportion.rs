@@ -1,7 +1,7 @@
 //! Do amplitudes far below saturation grow in proportion to the integration time? If not, the gain drifts, or the times
 //! are not those of the frames.
 
-use super::frame_sums::{FrameSums, Times};
+use super::frame_sums::{Times, kept};
 use crate::calibrate::blocks::SIDE;
 use crate::numerics::statistics::median;
 
@@ -16,15 +16,8 @@ const LEAST_BLOCKS: usize = 6;
 /// ln of the amplitude per time that blocks far below saturation share, for the number of each frame in the order of
 /// time, up to a constant. `noise_dn` is the noise of a pixel at the shortest time.
 pub(super) fn ln_rates(times: &Times, noise_dn: f64) -> Vec<(f64, f64)> {
-    let frames: Vec<(f64, &FrameSums)> = times
-        .iter()
-        .flat_map(|(&bits, frames)| frames.iter().map(move |frame| (f64::from_bits(bits), frame)))
-        .filter(|(_, frame)| !frame.stray)
-        .collect();
-    let mean = |at: usize, block: usize| {
-        let found = &frames[at].1.blocks[block];
-        f64::from(found.sum_dn) / f64::from(found.count)
-    };
+    let frames = kept(times);
+    let mean = |at: usize, block: usize| frames[at].1.blocks[block].mean_dn();
     let largest: Vec<f64> = (0..SIDE * SIDE)
         .map(|block| (0..frames.len()).map(|at| mean(at, block)).fold(0.0, f64::max))
         .collect();

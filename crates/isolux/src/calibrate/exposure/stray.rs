@@ -2,23 +2,9 @@
 
 use super::frame_sums::{FrameSums, Times};
 use crate::calibrate::smooth_curve::{departure, expected};
+use crate::calibrate::stray::{DEVIATIONS, LEAST_DEPARTURE, Stray, few_off, is_disputed, wrong_of_two};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 
-/// Frames that were left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stray {
-    pub(super) frames: usize,
-    /// The frame that departs most.
-    pub(super) worst: usize,
-    /// By how much, relative.
-    pub(super) departure: f64,
-}
-
-/// A frame may differ from its repeats by this share: cameras settle by up to 3 % after a change of the time, and half
-/// of it is all that one of two frames adds to an error.
-const LEAST_DEPARTURE: f64 = 0.05;
-/// ... or by this many standard deviations of all repeats.
-const DEVIATIONS: f64 = 8.0;
 /// A time with one frame only may depart from the curve of the others by this share: the curve bends.
 const LEAST_BEND: f64 = 0.2;
 /// When more than this share of the frames departs, it is no exception, and none is left out.
@@ -41,19 +27,8 @@ impl Repeats {
         median(&mut self.ln_levels.clone()).unwrap_or(BLACK)
     }
 
-    /// Two frames that differ: only the other times tell which is right.
     fn is_disputed(&self, tolerance: f64) -> bool {
-        matches!(self.ln_levels[..], [a, b] if (a - b).abs() > tolerance)
-    }
-
-    /// Of three frames or more, those few that differ from the others.
-    fn few_off(&self, tolerance: f64) -> impl Iterator<Item = Departure> {
-        let median = self.median();
-        let departures =
-            (0..self.ln_levels.len()).map(|index| (self.bits, index, self.ln_levels[index] - median));
-        let off: Vec<Departure> = departures.filter(|found| found.2.abs() > tolerance).collect();
-        let few = 2 * off.len() < self.ln_levels.len();
-        off.into_iter().filter(move |_| few)
+        is_disputed(&self.ln_levels, tolerance)
     }
 }
 
@@ -71,13 +46,13 @@ pub(super) fn leave_out(times: &mut Times, dead: usize) -> Option<Stray> {
     let mut curve = Vec::new();
     for group in repeats.iter().filter(|group| !group.is_disputed(tolerance)) {
         curve.push((group.ln_time, group.median()));
-        found.extend(group.few_off(tolerance));
+        let off = few_off(&group.ln_levels, group.median(), tolerance);
+        found.extend(off.into_iter().map(|(index, departure)| (group.bits, index, departure)));
     }
     for group in repeats.iter().filter(|group| group.is_disputed(tolerance)) {
-        let [a, b] = [group.ln_levels[0], group.ln_levels[1]];
         let Some(level) = expected(&curve, group.ln_time) else { continue };
-        let wrong = usize::from((a - level).abs() < (b - level).abs());
-        found.push((group.bits, wrong, group.ln_levels[wrong] - group.ln_levels[1 - wrong]));
+        let (wrong, departure) = wrong_of_two(&group.ln_levels, level);
+        found.push((group.bits, wrong, departure));
     }
     found.extend(single(&repeats, &curve));
     let frames = times.values().map(Vec::len).sum::<usize>();
@@ -113,13 +88,10 @@ fn single<'a>(repeats: &'a [Repeats], curve: &'a [(f64, f64)]) -> impl Iterator<
 }
 
 fn mark(times: &mut Times, found: &[Departure]) -> Option<Stray> {
-    let mut worst: Option<(usize, f64)> = None;
-    for &(bits, index, departure) in found {
-        let Some(frame) = times.get_mut(&bits).and_then(|frames| frames.get_mut(index)) else { continue };
+    let marked = found.iter().filter_map(|&(bits, index, departure)| {
+        let frame = times.get_mut(&bits)?.get_mut(index)?;
         frame.stray = true;
-        if worst.is_none_or(|worst| departure.abs() > worst.1.abs()) {
-            worst = Some((frame.number, departure));
-        }
-    }
-    worst.map(|(worst, departure)| Stray { frames: found.len(), worst, departure: departure.exp_m1() })
+        Some((frame.number, departure))
+    });
+    Stray::of(marked)
 }

@@ -92,7 +92,8 @@ impl<'a> Knowledge<'a> {
         let others: Vec<Factor> = fitted.iter().copied().filter(|other| *other != factor).collect();
         let error = |with: &[Factor]| self.error(factor, with, seen);
         let alone = error(&[]);
-        let inflation = (error(&others) / alone).max(1.0);
+        let with_others = error(&others);
+        let inflation = (with_others / alone).max(1.0);
         let standard_error = root_mean(&self.posterior(&self.functionals(factor, seen)));
         let free_spread = factor.least_spread().map(|_| self.free_spread(factor, &others));
         let narrow = |spread: Option<f64>| {
@@ -112,8 +113,8 @@ impl<'a> Knowledge<'a> {
             let guilty: Vec<Factor> = others.iter().copied().filter(confounds).collect();
             let with = if guilty.is_empty() { others } else { guilty };
             Some(Refusal::Confounded { factor, with, inflation })
-        } else if too_large(error(&others)) {
-            Some(Refusal::Uncertain { factor, standard_error: error(&others) })
+        } else if too_large(with_others) {
+            Some(Refusal::Uncertain { factor, standard_error: with_others })
         } else {
             None
         };

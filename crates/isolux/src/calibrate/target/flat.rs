@@ -64,9 +64,8 @@ impl FlatLabel {
             return None;
         }
         let (inverse, scale) = settle(&pixels)?;
-        let middle = |of: fn(&Pixel) -> f64| median(&mut pixels.iter().map(of).collect::<Vec<_>>());
-        let noise_m = scale / middle(|pixel| pixel.amplitude_dn)?;
-        if noise_m < NOISY * middle(|pixel| pixel.distance_m)? {
+        let noise_m = scale / middle(&pixels, |pixel| pixel.amplitude_dn)?;
+        if noise_m < NOISY * middle(&pixels, |pixel| pixel.distance_m)? {
             return None;
         }
         let flat = Self { inverse, intrinsics: *intrinsics };
@@ -94,13 +93,17 @@ impl FlatLabel {
 
     /// How far the median distance of a window is from the plane, over what is allowed.
     fn deviation(&self, pixels: &[Pixel], scale: f64) -> Option<f64> {
-        let middle = |of: fn(&Pixel) -> f64| median(&mut pixels.iter().map(of).collect::<Vec<_>>());
         let away = |pixel: &Pixel| Some(pixel.distance_m - radial(&self.inverse, &pixel.ray)?);
         let away_m = median(&mut pixels.iter().filter_map(away).collect::<Vec<_>>())?.abs();
         // A median of n normal values has the standard error 1.25 σ / √n.
-        let error_m = 1.25 * scale / middle(|pixel| pixel.amplitude_dn)? / (pixels.len() as f64).sqrt();
-        Some(away_m / (EXPECTED_SCALE * error_m).max(HARMLESS * middle(|pixel| pixel.distance_m)?))
+        let error_m =
+            1.25 * scale / middle(pixels, |pixel| pixel.amplitude_dn)? / (pixels.len() as f64).sqrt();
+        Some(away_m / (EXPECTED_SCALE * error_m).max(HARMLESS * middle(pixels, |pixel| pixel.distance_m)?))
     }
+}
+
+fn middle(pixels: &[Pixel], of: fn(&Pixel) -> f64) -> Option<f64> {
+    median(&mut pixels.iter().map(of).collect::<Vec<_>>())
 }
 
 fn pixel(frame: &Frame, distance_m: &Plane<f32>, intrinsics: &Intrinsics, index: usize) -> Option<Pixel> {

@@ -58,14 +58,9 @@ impl WindowNoise {
 
     /// Of a window whose amplitude is expected to be exp `ln_amplitude` DN.
     pub(super) fn effect(&self, window: &WindowMedians, ln_amplitude: f64) -> Effect {
-        let AmplitudeNoise { read_variance_dn2, shot_variance_dn2_per_dn, ambient_variance_dn2_per_us } =
-            self.by_amplitude;
         let amplitude_dn = ln_amplitude.exp();
         let time_us = if window.time_us.is_nan() { 0.0 } else { f64::from(window.time_us) };
-        let variance_dn2 = read_variance_dn2
-            + shot_variance_dn2_per_dn * amplitude_dn
-            + ambient_variance_dn2_per_us * time_us;
-        let relative = variance_dn2 / (amplitude_dn * amplitude_dn);
+        let relative = self.by_amplitude.variance_dn2(amplitude_dn, time_us) / (amplitude_dn * amplitude_dn);
         let of_median = MEDIAN_VARIANCE * relative / f64::from(window.pixels);
         let weight = UNEVENNESS * UNEVENNESS / (UNEVENNESS * UNEVENNESS + of_median);
         let bright = relative * LEAST_SIGNAL_TO_NOISE * LEAST_SIGNAL_TO_NOISE <= 1.0;

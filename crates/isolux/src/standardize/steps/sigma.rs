@@ -10,7 +10,7 @@
 
 use crate::calibration::Calibration;
 use crate::denoise::Denoiser;
-use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::metres_per_radian;
 use crate::frame::{Channels, Frame, IntegrationTime};
 use crate::standardize::kernel::BLOCK;
 use crate::standardize::planner::Planner;
@@ -54,10 +54,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>, distance_scales: bool) -> Result<O
     if !planner.has(needed, ["sigma", "sigma", "integration time"], required)? {
         return Ok(None);
     }
-    let unit_noise_m = planner
-        .traits
-        .modulation_frequency_hz
-        .map(|frequency_hz| SPEED_OF_LIGHT_M_PER_S / (4.0 * std::f64::consts::PI * frequency_hz));
+    let unit_noise_m = planner.traits.modulation_frequency_hz.map(metres_per_radian);
     let light = if by_intensity.is_some() { "intensity" } else { "amplitude" };
     let distance = match (distance_scales, unit_noise_m) {
         (false, _) => "",

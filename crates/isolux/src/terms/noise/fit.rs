@@ -59,9 +59,7 @@ impl Noise {
             }
             _ => {
                 let time_us = cell.integration_time_us.filter(|_| timed).unwrap_or(0.0);
-                by_amplitude.read_variance_dn2
-                    + by_amplitude.shot_variance_dn2_per_dn * cell.amplitude_dn
-                    + by_amplitude.ambient_variance_dn2_per_us * time_us
+                by_amplitude.variance_dn2(cell.amplitude_dn, time_us)
             }
         };
         let errors = cells.iter().map(|cell| (predicted(cell) / cell.variance_dn2).sqrt() - 1.0);

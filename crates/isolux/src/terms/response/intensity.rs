@@ -7,11 +7,12 @@
 //! inverted bins a cosine again, `x_1 + x_3 = x_2 + x_4`. Where the phase is known from the distance, this is
 //! exactly the tier of the raw bins.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_8};
+use std::f64::consts::FRAC_PI_8;
 
 use serde::{Deserialize, Serialize};
 
 use super::ResponseError;
+use super::bins::bins;
 use super::full_well::FullWell;
 use super::means::{PixelMeans, PixelSeries};
 use super::phase_samples::{rate, shot_noise};
@@ -109,11 +110,6 @@ impl PlannedIntensity {
         let (cosine, sine) = (a1 - a3, a2 - a4);
         Some((0.5 * (cosine * cosine + sine * sine).sqrt()) as f32)
     }
-}
-
-/// Bins of an intensity and amplitude at a phase, without the ripple.
-fn bins(intensity: f64, amplitude: f64, phase: f64) -> [f64; 4] {
-    [0.0, 1.0, 2.0, 3.0].map(|k| intensity + amplitude * (phase - k * FRAC_PI_2).cos())
 }
 
 struct Dc;

@@ -21,6 +21,7 @@
 
 mod ambient;
 mod amplitude;
+mod bins;
 mod error;
 mod fill_time;
 mod full_well;

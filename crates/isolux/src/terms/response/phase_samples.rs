@@ -9,7 +9,7 @@ use super::means::{PixelMeans, PixelSeries};
 use super::solve::{Model, Point, Series};
 use super::well::InverseTable;
 use super::well_fit::{Channel, Fitted, fit};
-use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::metres_per_radian;
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::{FitQuality, Source};
 
@@ -49,11 +49,10 @@ impl PhaseSampleResponse {
 
     /// Prepared for many pixels.
     pub(crate) fn planned(&self) -> PlannedBins {
-        let metres = |frequency| SPEED_OF_LIGHT_M_PER_S / (4.0 * std::f64::consts::PI * frequency);
         PlannedBins {
             black_level_dn: self.well.black_level_dn,
             table: self.well.table(self.largest_dn),
-            metres_per_radian: self.modulation_frequency_hz.map(metres),
+            metres_per_radian: self.modulation_frequency_hz.map(metres_per_radian),
         }
     }
 }

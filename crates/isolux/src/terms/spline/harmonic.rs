@@ -1,10 +1,8 @@
 //! The aliased third harmonic of the modulation.
 
-use std::f64::consts::PI;
-
 use serde::{Deserialize, Serialize};
 
-use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase;
 
 /// The aliased third harmonic of the modulation, in ln h.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,7 +19,7 @@ pub struct Harmonic {
 impl Harmonic {
     /// 4φ at a distance (m), not wrapped, rad.
     pub(super) fn angle(modulation_frequency_hz: f64, distance_m: f64) -> f64 {
-        16.0 * PI * modulation_frequency_hz * distance_m / SPEED_OF_LIGHT_M_PER_S
+        4.0 * phase::of_distance(modulation_frequency_hz, distance_m)
     }
 
     /// `[cos 4φ, sin 4φ]`.

@@ -1,8 +1,7 @@
 //! Frames of known noise: does the survey find it?
 
 use super::*;
-use crate::frame::Plane;
-use crate::frame::Shape;
+use crate::frame::{PixelFlags, Plane, Shape};
 use crate::numerics::hash::splitmix64;
 
 const READ_DN2: f64 = 4.0;

@@ -105,11 +105,15 @@ fn words_about(light: &AmbientLight, calibrated_dn_per_us: f64) -> String {
     )
 }
 
+/// The tiers whose channels the recording has, the best first.
+fn possible<'a>(planner: &'a Planner<'_>, response: &'a Response) -> impl Iterator<Item = ResponseTier> + 'a {
+    response.tiers().filter(|tier| planner.traits.channels.contains(tier.channels()))
+}
+
 /// The best tier that calibration and recording allow.
 fn best_tier(planner: &Planner<'_>, response: &Response) -> Option<ResponseTier> {
-    let known =
-        |tier: &ResponseTier| *tier != ResponseTier::Ambient || planner.traits.ambient_light.is_some();
-    response.tiers().filter(known).find(|tier| planner.traits.channels.contains(tier.channels()))
+    let light_is_known = planner.traits.ambient_light.is_some();
+    possible(planner, response).find(|tier| *tier != ResponseTier::Ambient || light_is_known)
 }
 
 /// The tier by amplitude and distance, where nothing better tells the fill and the plan would use it if the ambient light
@@ -117,8 +121,7 @@ fn best_tier(planner: &Planner<'_>, response: &Response) -> Option<ResponseTier>
 pub(crate) fn wants_ambient_light<'a>(planner: &Planner<'a>) -> Option<&'a AmbientResponse> {
     let response = planner.calibration?.terms.response.as_ref()?;
     let ambient = response.ambient.as_ref()?;
-    let possible = |tier: &ResponseTier| planner.traits.channels.contains(tier.channels());
-    let tier = planner.choice.response_tier.or_else(|| response.tiers().find(possible));
+    let tier = planner.choice.response_tier.or_else(|| possible(planner, response).next());
     let timed = match planner.choice.time {
         Some(step) => step == TimeStep::Response,
         None => planner.choice.method == Method::Best,

@@ -1,7 +1,6 @@
 //! What four bins of a soft well make of a light: the amplitude that they keep, and its noise.
 
-use std::f64::consts::FRAC_PI_2;
-
+use crate::terms::response::bins::bins;
 use crate::terms::response::well::SoftWell;
 
 /// The well as amplitudes show it.
@@ -28,8 +27,7 @@ pub(crate) struct Light {
 impl Light {
     /// Charges of the four bins, DN.
     fn bins(self) -> [f64; 4] {
-        let mean = self.amplitude_dn * self.charge;
-        [0.0, 1.0, 2.0, 3.0].map(|k| mean + self.amplitude_dn * (self.phase - k * FRAC_PI_2).cos())
+        bins(self.amplitude_dn * self.charge, self.amplitude_dn, self.phase)
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::light::{Light, Well};
-use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
+use crate::frame::phase::of_distance;
 use crate::terms::check::{Check, ParameterError, Parameters};
 use crate::terms::response::well::SoftWell;
 use crate::terms::spline::Law;
@@ -63,9 +63,7 @@ const REACH: f64 = 4.0;
 
 /// Phase of a distance (m), rad.
 pub(super) fn phase(modulation_frequency_hz: Option<f64>, distance_m: f64) -> f64 {
-    let of =
-        |frequency_hz: f64| 4.0 * std::f64::consts::PI * frequency_hz * distance_m / SPEED_OF_LIGHT_M_PER_S;
-    modulation_frequency_hz.map_or(MEAN_PHASE, of)
+    modulation_frequency_hz.map_or(MEAN_PHASE, |frequency_hz| of_distance(frequency_hz, distance_m))
 }
 
 impl AmbientResponse {
