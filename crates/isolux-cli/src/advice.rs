@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use isolux::{Advice, RecordingKind};
+use isolux::{Advice, RecordingField, RecordingKind};
 
 /// A finding, with what can be done about it.
 pub(crate) fn with(finding: impl Display, advice: Option<Advice>) -> String {
@@ -29,6 +29,7 @@ fn words(advice: &Advice) -> String {
         Advice::ReferenceDistance { distance_m } => {
             return setting("--reference-distance-m", *distance_m);
         }
+        Advice::WriteField(field) => return format!("write {} into its recording.json", json(field)),
         Advice::Calibrate => "`isolux calibrate` measures them",
         Advice::GiveNoise => {
             "give it with --read-noise-dn and --shot-noise-dn2-per-dn, or fit it with \
@@ -52,6 +53,14 @@ fn words(advice: &Advice) -> String {
         _ => "",
     };
     fixed.to_owned()
+}
+
+/// A field of `recording.json`, as it is written there.
+fn json(field: &RecordingField) -> String {
+    match field {
+        RecordingField::SaturatedAmplitude { value_dn } => format!("\"saturated_amplitude\": {value_dn}"),
+        _ => String::new(),
+    }
 }
 
 fn setting(option: &str, value: Option<f64>) -> String {

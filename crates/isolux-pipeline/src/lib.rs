@@ -8,6 +8,7 @@
 //! | [`calibrate()`] | sweeps, targets, scenes | a calibration | [`mod@calibrate`] |
 //! | [`assess()`] | a recording, a chain | figures before and after, beside the textbook's and the paper's chain | [`mod@assess`] |
 //! | [`diagnose()`] | a recording | whether it is raw, corrected, clipped | |
+//! | [`inspect()`] | a recording | what in a few of its frames contradicts what it says of itself | |
 //! | [`overview()`] | a recording | its channels, times and ranges of values | [`mod@overview`] |
 //! | [`page::page`] | an assessment | a page about it, or its figures in words | [`page`], [`figures`] |
 //! | [`simulate::record`] | a simulated scene | a recording | [`simulate`] |
@@ -55,6 +56,7 @@ mod diagnose;
 mod error;
 pub mod figures;
 mod frames;
+mod inspect;
 mod observer;
 pub mod overview;
 pub mod page;
@@ -69,6 +71,7 @@ pub use brackets::Brackets;
 pub use calibrate::{CalibrationPaths, CalibrationSources, calibrate};
 pub use diagnose::diagnose;
 pub use error::{FrameError, PipelineError};
+pub use inspect::inspect;
 pub use observer::{Observer, Unobserved, Work};
 pub use overview::{Overview, overview};
 pub use plan::{plan, plan_with};

@@ -9,13 +9,14 @@ mod light;
 
 use crate::error::PipelineError;
 use crate::frames;
+use crate::inspect;
 use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
-/// Plans the chain for a recording. Where the standard deviation is required and the noise is unknown, the
+/// Plans the chain for a recording. Some frames are looked at for what contradicts its description. Where the standard deviation is required and the noise is unknown, the
 /// recording is read once to estimate it; where the response needs the ambient light, some frames are read. The
-/// observer receives the notes of the plan as remarks.
+/// observer receives what was found and the notes of the plan as remarks.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
@@ -39,6 +40,7 @@ pub fn plan_with(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<Standardizer, PipelineError> {
+    inspect::remark_on(source, observer)?;
     let mut choice = *choice;
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
     if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use isolux::Advice;
 use isolux::calibrate::AmbientUnknown;
+use isolux::inspect::Suspicion;
 use isolux::standardize::Note;
 
 /// How much a remark matters.
@@ -22,6 +23,13 @@ pub enum Severity {
 pub enum Remark {
     /// A note of the plan of a chain.
     Plan(Note),
+    /// A recording is probably not what it says.
+    Suspicion {
+        /// The recording.
+        recording: String,
+        /// What contradicts it.
+        suspicion: Suspicion,
+    },
     /// The noise of the amplitude had to be taken from neighbouring pixels.
     NoiseFromNeighbours {
         /// The recording.
@@ -58,9 +66,10 @@ impl Remark {
             Self::Plan(_) | Self::NoiseFromNeighbours { .. } | Self::AmbientLightUnknown { .. } => {
                 Severity::Note
             }
-            Self::SceneMoved { .. } | Self::CamerasDiffer { .. } | Self::FrequenciesDiffer => {
-                Severity::Warning
-            }
+            Self::Suspicion { .. }
+            | Self::SceneMoved { .. }
+            | Self::CamerasDiffer { .. }
+            | Self::FrequenciesDiffer => Severity::Warning,
         }
     }
 
@@ -70,6 +79,7 @@ impl Remark {
         match self {
             Self::CamerasDiffer { .. } => Some(Advice::NameCamera),
             Self::Plan(note) => note.advice(),
+            Self::Suspicion { suspicion, .. } => suspicion.advice(),
             _ => None,
         }
     }
@@ -79,6 +89,7 @@ impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Plan(note) => note.fmt(f),
+            Self::Suspicion { recording, suspicion } => write!(f, "`{recording}`: {suspicion}"),
             Self::NoiseFromNeighbours { recording } => write!(
                 f,
                 "`{recording}`: no two consecutive frames share an integration time: the noise is taken from \

@@ -16,6 +16,17 @@ pub enum RecordingKind {
     Scene,
 }
 
+/// A field of a recording's description, with the value that it seems to need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RecordingField {
+    /// The amplitude that means saturated.
+    SaturatedAmplitude {
+        /// The code, DN.
+        value_dn: f32,
+    },
+}
+
 /// One thing to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -65,4 +76,6 @@ pub enum Advice {
     Window,
     /// Take the calibration as it is, although it is poor.
     AcceptPoorFit,
+    /// State this in the description of the recording.
+    WriteField(RecordingField),
 }

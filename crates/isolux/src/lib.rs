@@ -20,6 +20,7 @@
 //! | [`specular`] | limit highlights |
 //! | [`evaluate`] | measure how much better the standardized amplitudes are |
 //! | [`diagnose`] | find out what the amplitudes of a recording depend on |
+//! | [`inspect`] | find out from a few frames whether a recording means what it says |
 //! | [`still_scene`] | check that a scene stood still while the integration time varied |
 //! | [`phase`] | amplitude, distance and intensity from the raw bins |
 //! | [`statistics`] | medians, robust slopes and moments that other crates share |
@@ -57,6 +58,7 @@ pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
 mod frame;
+pub mod inspect;
 mod memory;
 pub mod names;
 mod numerics;
@@ -68,7 +70,7 @@ pub mod still_scene;
 mod surface;
 pub mod terms;
 
-pub use advice::{Advice, RecordingKind};
+pub use advice::{Advice, RecordingField, RecordingKind};
 pub use calibration::{Calibration, Reference};
 pub use choice::Choice;
 pub use denoise::DenoiseRule;

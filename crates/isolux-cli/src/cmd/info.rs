@@ -1,11 +1,14 @@
 //! `isolux info`: what a recording holds, and what can be done with it.
 
 use isolux::Channels;
+use isolux::inspect::Suspicion;
 use isolux_io::Metadata;
 use isolux_io::recording::Storage;
+use isolux_pipeline::inspect;
 use isolux_pipeline::overview::{Overview, Spread, overview};
 use serde::Serialize;
 
+use crate::advice;
 use crate::failure::Outcome;
 use crate::options::InfoArgs;
 use crate::terminal::{self, Terminal, table};
@@ -23,6 +26,7 @@ struct Report {
     channels: Vec<Channel>,
     #[serde(flatten)]
     overview: Overview,
+    suspicions: Vec<Suspicion>,
     advice: Vec<String>,
 }
 
@@ -36,7 +40,9 @@ struct Channel {
 
 pub(crate) fn run(args: &InfoArgs) -> Outcome {
     let mut recording = isolux_io::open(&args.recording)?;
-    let overview = overview(&mut recording, &Terminal::default())?;
+    let observer = Terminal::default();
+    let suspicions = inspect(&mut recording, &observer)?;
+    let overview = overview(&mut recording, &observer)?;
     let metadata = recording.metadata();
     let report = Report {
         recording: metadata.path.display().to_string(),
@@ -45,8 +51,9 @@ pub(crate) fn run(args: &InfoArgs) -> Outcome {
         height: metadata.shape.height,
         width: metadata.shape.width,
         channels: metadata.channels.iter().map(channel).collect(),
-        advice: advice(metadata, &overview),
+        advice: possible(metadata, &overview),
         overview,
+        suspicions,
     };
     if args.json { terminal::print_json(&report) } else { terminal::print(describe(&report)) }
 }
@@ -62,7 +69,7 @@ fn channel(channel: &isolux_io::recording::ChannelInfo) -> Channel {
 }
 
 /// What can be done with the recording, and what it lacks.
-fn advice(metadata: &Metadata, overview: &Overview) -> Vec<String> {
+fn possible(metadata: &Metadata, overview: &Overview) -> Vec<String> {
     let has = |channels| metadata.available.contains(channels);
     let (path, times) = (metadata.path.display(), overview.integration_times_us.len());
     let mut advice = Vec::new();
@@ -127,6 +134,11 @@ fn describe(report: &Report) -> String {
     if let Some(share) = report.overview.invalid_distance_share {
         lines.push(format!("                  {} invalid, {sampled}", percent(share)));
     }
+    if !report.suspicions.is_empty() {
+        lines.push("what looks wrong".to_owned());
+    }
+    let suspicions = report.suspicions.iter();
+    lines.extend(suspicions.map(|found| format!("  {}", advice::with(found, found.advice()))));
     lines.push("what can be done".to_owned());
     lines.extend(report.advice.iter().map(|advice| format!("  {advice}")));
     lines.join("\n")

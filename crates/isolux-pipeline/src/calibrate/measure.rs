@@ -10,6 +10,7 @@ use isolux::{Channels, Frame};
 use super::linear::Linear;
 use crate::error::PipelineError;
 use crate::frames;
+use crate::inspect;
 use crate::observer::{Observer, Work};
 use crate::source::FrameSource;
 
@@ -32,7 +33,7 @@ impl Measurer<'_> {
         &mut self,
         source: &mut dyn FrameSource,
     ) -> Result<ExposureCurve, PipelineError> {
-        let mut sweep = ExposureSweep::new(self.introduce(source), self.settings);
+        let mut sweep = ExposureSweep::new(self.introduce(source)?, self.settings);
         self.each(source, Work::ExposureSweep, RESPONSE_CHANNELS, |frame| sweep.push(frame))?;
         Ok(sweep.finish())
     }
@@ -43,7 +44,7 @@ impl Measurer<'_> {
         source: &mut dyn FrameSource,
         response: Option<&Response>,
     ) -> Result<(ReferenceDecays, Option<ReferenceDecays>), PipelineError> {
-        let mut delivered = DistanceSweep::new(self.introduce(source), self.settings);
+        let mut delivered = DistanceSweep::new(self.introduce(source)?, self.settings);
         let mut linear_sweep = delivered.clone();
         let mut linear = Linear::new(&source.facts(), response);
         self.each(source, Work::DistanceSweep, linear.channels(), |frame| {
@@ -60,7 +61,7 @@ impl Measurer<'_> {
         response: Option<&Response>,
     ) -> Result<TargetWindows, PipelineError> {
         let facts = source.facts();
-        let mut sweep = TargetSweep::new(self.introduce(source), self.settings, facts.intrinsics());
+        let mut sweep = TargetSweep::new(self.introduce(source)?, self.settings, facts.intrinsics());
         let mut linear = Linear::new(&facts, response);
         if linear.is_possible() {
             sweep = sweep.of_linear_frames();
@@ -77,7 +78,7 @@ impl Measurer<'_> {
         source: &mut dyn FrameSource,
         response: Option<&Response>,
     ) -> Result<SceneObservations, PipelineError> {
-        let (facts, name) = (source.facts(), self.introduce(source));
+        let (facts, name) = (source.facts(), self.introduce(source)?);
         let mut linear = Linear::new(&facts, response);
         // Without a response, a still scene may determine it.
         let besides = if linear.is_possible() { linear.channels() } else { RESPONSE_CHANNELS };
@@ -91,11 +92,12 @@ impl Measurer<'_> {
         Ok(sweep.finish())
     }
 
-    /// Notes the camera of a recording; its name.
-    fn introduce(&mut self, source: &dyn FrameSource) -> String {
+    /// Notes the camera of a recording, and what contradicts its description; its name.
+    fn introduce(&mut self, source: &mut dyn FrameSource) -> Result<String, PipelineError> {
+        inspect::remark_on(source, self.observer)?;
         let facts = source.facts();
         self.cameras.extend(facts.info.camera);
-        facts.name
+        Ok(facts.name)
     }
 
     fn each(
