@@ -159,18 +159,18 @@ fn a_gain_that_drifts_is_refused() {
 }
 
 #[test]
-fn a_drift_between_single_frames_is_refused() {
+fn a_sweep_without_repeats_is_not_called_good() {
     let mut take = wall().take.clone();
     let mut number = 0;
     take.frames.retain(|_| {
         number += 1;
         number % 2 == 1
     });
-    let count = take.len() as f32;
-    let take = take.spoilt(|number, frame| dim(frame, 1.0 + 0.4 * number as f32 / count));
-    // Without repeats, the noise is not known either, nor what is far below saturation: nothing is told then.
-    let Ok((_, report)) = fit_sweeps(Some(&take), None) else { return };
-    assert!(report.exposure_curves[0].noise_floor.is_none());
+    let (calibration, report) = fit_sweeps(Some(&take), None).unwrap();
+    let verdict = Verdict::of(&calibration, &report);
+    let no_repeats =
+        |warning: &FitWarning| matches!(warning, FitWarning::Exposure(ExposureWarning::NoRepeats { .. }));
+    assert!(matches!(&verdict, Verdict::Usable { reasons } if reasons.iter().any(no_repeats)), "{verdict}");
 }
 
 #[test]
@@ -181,11 +181,21 @@ fn times_that_lag_by_a_frame_are_refused() {
 }
 
 #[test]
-fn a_board_that_darkens_half_way_is_refused() {
-    for factor in [0.7, 0.85] {
-        let half = board().take.len() / 2;
+fn a_board_that_darkens_or_brightens_on_the_way_is_refused() {
+    let cases = [
+        (0.7, 0.5),
+        (0.85, 0.5),
+        (1.15, 0.5),
+        (1.3, 0.5),
+        (0.7, 0.15),
+        (1.3, 0.15),
+        (0.7, 0.85),
+        (1.3, 0.85),
+    ];
+    for (factor, share) in cases {
+        let first = (board().take.len() as f64 * share) as usize;
         let take = board().take.clone().spoilt(|number, frame| {
-            if number >= half {
+            if number >= first {
                 dim(frame, factor);
             }
         });

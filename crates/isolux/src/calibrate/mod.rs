@@ -51,7 +51,7 @@ pub use fit::{ExposureFit, fit};
 pub use measure_error::{MeasureError, UnlikeShapes};
 pub use measurements::Measurements;
 pub use report::FitReport;
-pub use residual::TermResidual;
+pub use residual::{ResidualOf, TermResidual};
 pub use scene::{
     CameraMotion, MotionFinding, MotionScout, SceneObservations, SceneReport, SceneSweep, SceneWarning,
 };

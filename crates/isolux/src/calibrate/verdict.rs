@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::report::FitReport;
-use super::residual::TermResidual;
+use super::residual::{ResidualOf, TermResidual};
 use super::severity::{POOR_SHARE, Severity};
 use super::warning::FitWarning;
 use crate::advice::Advice;
@@ -12,6 +12,10 @@ use crate::calibration::Calibration;
 /// The windows of targets and the facets of scenes scatter by more, each by its own gloss and pose; thousands of them
 /// still make a law. Twice the share of a real checkerboard's squares.
 const POOR_SCATTER: f64 = 0.12;
+
+/// A sample of the table is predicted from its neighbours, twice as far apart as the samples between which the table
+/// is used; the error of interpolation grows with the square of that.
+const WIDER_STEPS: f64 = 4.0;
 
 /// What a calibration is worth, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +57,7 @@ impl Verdict {
         let share = |found: &TermResidual| found.residual / found.limit;
         let worst = residuals(calibration, report)
             .into_iter()
+            .filter(|found| found.of == ResidualOf::Fitted)
             .reduce(|worst, next| if share(&next) > share(&worst) { next } else { worst });
         Self::Good { worst }
     }
@@ -99,21 +104,32 @@ impl fmt::Display for Verdict {
 fn residuals(calibration: &Calibration, report: &FitReport) -> Vec<TermResidual> {
     let terms = &calibration.terms;
     let mut found = Vec::new();
-    let mut add = |term, residual: Option<f64>, limit| {
-        found.extend(residual.map(|residual| TermResidual { term, residual, limit }));
+    let mut add = |term, of, residual: Option<f64>, limit| {
+        found.extend(residual.map(|residual| TermResidual { term, of, residual, limit }));
     };
     // Several sweeps show several scenes, whose saturation differs.
     if report.exposure_curves.len() == 1 {
-        add("lut", terms.lut.as_ref().map(|lut| lut.fit.residual), POOR_SHARE);
+        let fit = terms.lut.as_ref().map(|lut| &lut.fit);
+        add("lut", ResidualOf::Fitted, fit.map(|fit| fit.residual), POOR_SHARE);
+        let held_out = fit.and_then(|fit| fit.held_out_residual);
+        add("lut", ResidualOf::HeldOut, held_out, WIDER_STEPS * POOR_SHARE);
     }
-    if report.spline_uses.is_empty() {
-        let scatter = terms.spline.as_ref().map(|spline| spline.fit.residual);
-        add("spline", scatter, POOR_SCATTER);
-        add("profile", terms.profile.as_ref().map(|profile| profile.fit.residual), POOR_SCATTER);
+    let uses = &report.spline_uses;
+    if uses.is_empty() {
+        let laws = [
+            ("spline", terms.spline.as_ref().map(|spline| &spline.fit)),
+            ("profile", terms.profile.as_ref().map(|profile| &profile.fit)),
+        ];
+        for (term, fit) in laws {
+            add(term, ResidualOf::Fitted, fit.map(|fit| fit.residual), POOR_SCATTER);
+            add(term, ResidualOf::HeldOut, fit.and_then(|fit| fit.held_out_residual), POOR_SCATTER);
+        }
     } else {
         // Without the positions that the fit found to be outliers, saturated ones for the most part.
-        let kept = report.spline_uses.iter().filter_map(|used| used.residual);
-        add("spline", kept.reduce(f64::max), POOR_SHARE);
+        let kept = uses.iter().filter_map(|used| used.residual);
+        add("spline", ResidualOf::Fitted, kept.reduce(f64::max), POOR_SHARE);
+        let unseen = uses.iter().filter_map(|used| used.held_out_error);
+        add("spline", ResidualOf::HeldOut, unseen.reduce(f64::max), POOR_SHARE);
     }
     found
 }

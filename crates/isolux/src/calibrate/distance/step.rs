@@ -23,62 +23,67 @@ pub(super) struct Step {
     pub(super) ln_factor: f64,
 }
 
-/// A smooth law is a cubic in ln d here, of each time its own: for unsaturated amplitudes it is good to 2 %.
-const COEFFICIENTS: usize = 4;
-/// Positions that a time needs to take part.
-const LEAST_POINTS: usize = 7;
+/// A smooth law is a cubic in ln d here, the same for all times but for the level of each: for unsaturated amplitudes it
+/// is good to 2 %.
+const POWERS: usize = 3;
+/// Positions that a time needs to take part: fewer tell little more than its level.
+const LEAST_POINTS: usize = 4;
 /// A change must be larger than what a cubic leaves of a smooth law, three times.
 const LEAST_CHANGE: f64 = 0.05;
 /// It must explain this share of what the smooth law leaves, ...
 const LEAST_SHARE: f64 = 0.7;
 /// ... and be this many standard errors large.
 const STANDARD_ERRORS: f64 = 6.0;
-/// Share of a change that the law must not be able to take up.
-const LEAST_FREE_SHARE: f64 = 0.02;
+/// Points by which a change must be seen that the law cannot take up.
+const LEAST_FREE: f64 = 0.4;
 
 /// The change that explains the points best, if it is one. Points beyond saturation must not be among them.
 pub(super) fn step(points: &[Point]) -> Option<Step> {
-    let times = points.iter().map(|point| point.time).max()? + 1;
-    let groups: Vec<Vec<&Point>> = (0..times)
-        .map(|time| points.iter().filter(|point| point.time == time).collect::<Vec<_>>())
-        .filter(|group| group.len() >= LEAST_POINTS)
-        .collect();
-    let smooth: Vec<(&Vec<&Point>, DMatrix<f64>)> =
-        groups.iter().map(|group| Some((group, left_by_law(group)?))).collect::<Option<_>>()?;
-    let left = |values: &dyn Fn(&Point) -> f64| -> Vec<DVector<f64>> {
-        let vector = |group: &[&Point]| DVector::from_iterator(group.len(), group.iter().map(|p| values(p)));
-        smooth.iter().map(|(group, left)| left * vector(group)).collect()
+    let points = of_well_seen_times(points);
+    let left = left_by_law(&points)?;
+    let of = |value: &dyn Fn(&Point) -> f64| {
+        &left * DVector::from_iterator(points.len(), points.iter().map(value))
     };
-    let dot = |a: &[DVector<f64>], b: &[DVector<f64>]| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>();
-    let levels = left(&|point| point.ln_level);
-    let all = dot(&levels, &levels);
-    let count: usize = groups.iter().map(Vec::len).sum();
-    let free = count.checked_sub(COEFFICIENTS * groups.len() + 2).filter(|free| *free > 0)? as f64;
-    let mut frames: Vec<usize> = groups.iter().flatten().map(|point| point.frame).collect();
+    let levels = of(&|point| point.ln_level);
+    let all = levels.norm_squared();
+    let free = left.trace() - 1.0;
+    let mut frames: Vec<usize> = points.iter().map(|point| point.frame).collect();
     frames.sort_unstable();
     frames.dedup();
     let candidate = |&frame: &usize| {
-        let changed = left(&|point| f64::from(u8::from(point.frame >= frame)));
-        let (with, own) = (dot(&changed, &levels), dot(&changed, &changed));
-        (own > LEAST_FREE_SHARE * count as f64)
-            .then(|| (with * with / own, Step { frame, ln_factor: with / own }, own))
+        let changed = of(&|point| f64::from(u8::from(point.frame >= frame)));
+        let (with, own) = (changed.dot(&levels), changed.norm_squared());
+        (own > LEAST_FREE).then(|| (with * with / own, Step { frame, ln_factor: with / own }, own))
     };
     let (explained, step, own) = frames.iter().filter_map(candidate).max_by(|a, b| a.0.total_cmp(&b.0))?;
     let error = ((all - explained).max(0.0) / free / own).sqrt();
-    let is_one =
-        step.ln_factor.abs() > LEAST_CHANGE.max(STANDARD_ERRORS * error) && explained > LEAST_SHARE * all;
+    let is_one = free > 0.0
+        && step.ln_factor.abs() > LEAST_CHANGE.max(STANDARD_ERRORS * error)
+        && explained > LEAST_SHARE * all;
     is_one.then_some(step)
 }
 
-/// The matrix that takes a smooth law out of the levels of a time.
-fn left_by_law(group: &[&Point]) -> Option<DMatrix<f64>> {
-    let count = group.len();
-    let middle = group.iter().map(|point| point.ln_distance).sum::<f64>() / count as f64;
-    let powers = DMatrix::from_fn(count, COEFFICIENTS, |row, power| {
-        (group[row].ln_distance - middle).powi(i32::try_from(power).unwrap_or(0))
+fn of_well_seen_times(points: &[Point]) -> Vec<Point> {
+    let seen = |time: usize| points.iter().filter(|point| point.time == time).count();
+    points.iter().copied().filter(|point| seen(point.time) >= LEAST_POINTS).collect()
+}
+
+/// The matrix that takes a smooth law and the level of each time out of the levels of the points.
+fn left_by_law(points: &[Point]) -> Option<DMatrix<f64>> {
+    let count = points.len();
+    let mut times: Vec<usize> = points.iter().map(|point| point.time).collect();
+    times.sort_unstable();
+    times.dedup();
+    let middle = points.iter().map(|point| point.ln_distance).sum::<f64>() / count.max(1) as f64;
+    let law = DMatrix::from_fn(count, POWERS + times.len(), |row, column| {
+        let point = &points[row];
+        match i32::try_from(column) {
+            Ok(power) if column < POWERS => (point.ln_distance - middle).powi(power + 1),
+            _ => f64::from(u8::from(times[column - POWERS] == point.time)),
+        }
     });
-    let inverse = (powers.transpose() * &powers).try_inverse()?;
-    Some(DMatrix::identity(count, count) - &powers * inverse * powers.transpose())
+    let inverse = (law.transpose() * &law).try_inverse()?;
+    Some(DMatrix::identity(count, count) - &law * inverse * law.transpose())
 }
 
 #[cfg(test)]

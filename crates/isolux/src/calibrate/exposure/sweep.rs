@@ -131,6 +131,9 @@ impl ExposureSweep {
         if self.frames.times_decreased() {
             warnings.push(ExposureWarning::TimesNotIncreasing { recording: recording() });
         }
+        if self.curve.times().values().all(|frames| frames.len() == 1) {
+            warnings.push(ExposureWarning::NoRepeats { recording: recording() });
+        }
         // What moved for a moment is left out, and with times that lag nothing is known about movement.
         let explained =
             |fault: &SweepFault| matches!(fault, SweepFault::PartsMoved { .. } | SweepFault::TimesLag { .. });

@@ -34,6 +34,11 @@ pub enum ExposureWarning {
         /// Share of the image that moved.
         share: f64,
     },
+    /// No integration time was recorded twice: nothing shows a frame that is wrong, or a drift.
+    NoRepeats {
+        /// The recording.
+        recording: String,
+    },
     /// An integration time that was left out, because a frame has no pixel with a value.
     NoMeasurement {
         /// The recording.
@@ -104,6 +109,11 @@ impl fmt::Display for ExposureWarning {
                 "{recording}: at {integration_time_us} µs, {:.0} % of the image is at another distance than \
                  usual: an exposure sweep needs a still scene",
                 100.0 * share
+            ),
+            Self::NoRepeats { recording } => write!(
+                f,
+                "{recording}: each integration time was recorded once, so that a wrong frame or a drifting gain would not \
+                 be noticed: record several frames at each"
             ),
             Self::NoMeasurement { recording, integration_time_us } => write!(
                 f,

@@ -10,7 +10,7 @@ use super::least_squares::{LeastSquares, Model, count_positions};
 use super::select::{Robust, best, reweighted};
 use super::{Harmonic, Law, Spline, SplineError};
 use crate::numerics::bspline::Basis;
-use crate::numerics::statistics::median;
+use crate::numerics::statistics::{SIGMA_PER_MAD, median};
 use crate::terms::cubic::{Decay, Scaling};
 use crate::terms::{FitQuality, root_mean_square};
 
@@ -26,6 +26,10 @@ pub struct SplineUse {
     pub scaling: Scaling,
     /// Root mean square of the relative error that the law leaves on the positions that have a weight.
     pub residual: Option<f64>,
+    /// Typical relative error (1.4826 times the median) on those positions where the law was fitted without them: to the
+    /// other decays or, with one decay, to the other positions. No root mean square: without this decay, the law may
+    /// follow saturated positions of the others at an end.
+    pub held_out_error: Option<f64>,
     /// Positions without a weight: outliers to the others.
     pub outliers: usize,
 }
@@ -62,11 +66,12 @@ impl Spline {
         let robust = best(&rows, frequency_hz.is_some()).ok_or(SplineError::Undetermined)?;
         let law = in_gauge(&robust, basis, reference_m, range, frequency_hz);
         let relative = |row: usize| robust.solution.residuals[row].exp_m1();
+        let unseen = held_out(&rows, robust.model, &robust.weights);
         let fit = FitQuality {
             points: rows.len(),
             residual: root_mean_square((0..rows.len()).map(relative).filter(|r| r.is_finite()))
                 .unwrap_or(0.0),
-            held_out_residual: held_out(&rows, robust.model, &robust.weights),
+            held_out_residual: root_mean_square(unseen.iter().map(|&(_, error)| error)),
         };
         let (version, fitted_on, warnings) = (Self::VERSION, Vec::new(), Vec::new());
         let spline = Self { version, law, fitted_on, fit, warnings };
@@ -75,6 +80,9 @@ impl Spline {
             let number = used.iter().position(|&used| used == index);
             let points = || (0..rows.len()).filter(|&row| Some(rows.decay[row]) == number);
             let kept = points().filter(|&row| robust.weights[row] > 0.0);
+            let of_kept = unseen
+                .iter()
+                .filter(|(row, _)| Some(rows.decay[*row]) == number && robust.weights[*row] > 0.0);
             let covers = covers(decay, reference_m);
             SplineUse {
                 integration_time_us: decay.integration_time_us,
@@ -84,6 +92,7 @@ impl Spline {
                     Some(_) => Scaling::OntoOthers,
                 },
                 residual: root_mean_square(kept.map(relative)),
+                held_out_error: typical(of_kept.map(|&(_, error)| error.abs())),
                 outliers: points().filter(|&row| robust.weights[row] == 0.0).count(),
             }
         };
@@ -165,8 +174,13 @@ fn connected(decays: &[Decay], reference_m: f64) -> Result<(Vec<usize>, [f64; 2]
     }
 }
 
-/// Relative error (root mean square) on points that the fit has not seen.
-fn held_out(rows: &LeastSquares, model: Model, weights: &[f64]) -> Option<f64> {
+/// What the standard deviation of a normal distribution would be.
+fn typical(errors: impl Iterator<Item = f64>) -> Option<f64> {
+    median(&mut errors.collect::<Vec<_>>()).map(|median| SIGMA_PER_MAD * median)
+}
+
+/// Relative errors on points that the fit has not seen, each with its row.
+fn held_out(rows: &LeastSquares, model: Model, weights: &[f64]) -> Vec<(usize, f64)> {
     let groups = if rows.decays >= 2 { rows.decays } else { rows.positions };
     let group = |row: usize| if rows.decays >= 2 { rows.decay[row] } else { rows.position[row] };
     let mut errors = Vec::new();
@@ -177,24 +191,19 @@ fn held_out(rows: &LeastSquares, model: Model, weights: &[f64]) -> Option<f64> {
         let prior =
             (0..rows.len()).map(|row| f64::from(u8::from(group(row) != left_out))).collect::<Vec<_>>();
         let Some(fit) = reweighted(rows, model, &prior) else { continue };
-        let tested: Vec<usize> = (0..rows.len())
-            .filter(|&row| group(row) == left_out && rows.is_inside(row, &fit.weights))
-            .collect();
-        let mut errors_here: Vec<f64> = tested.iter().map(|&row| rows.error(row, &fit.solution)).collect();
-        if rows.decays >= 2 {
-            // The level of a decay is its own: that of its majority.
-            let trusted = tested.iter().zip(&errors_here).filter(|(row, _)| weights[**row] > 0.0);
-            let Some(level) = median(&mut trusted.map(|(_, error)| *error).collect::<Vec<_>>()) else {
-                continue;
-            };
-            errors_here.iter_mut().for_each(|error| *error -= level);
-        } else {
-            errors_here
-                .iter_mut()
-                .zip(&tested)
-                .for_each(|(error, &row)| *error = fit.solution.residuals[row]);
+        let tested =
+            (0..rows.len()).filter(|&row| group(row) == left_out && rows.is_inside(row, &fit.weights));
+        if rows.decays < 2 {
+            errors.extend(tested.map(|row| (row, fit.solution.residuals[row].exp_m1())));
+            continue;
         }
-        errors.extend(errors_here.into_iter().map(f64::exp_m1));
+        let found: Vec<(usize, f64)> = tested.map(|row| (row, rows.error(row, &fit.solution))).collect();
+        // The level of a decay is its own: that of its majority.
+        let trusted = found.iter().filter(|(row, _)| weights[*row] > 0.0);
+        let Some(level) = median(&mut trusted.map(|(_, error)| *error).collect::<Vec<_>>()) else {
+            continue;
+        };
+        errors.extend(found.into_iter().map(|(row, error)| (row, (error - level).exp_m1())));
     }
-    root_mean_square(errors)
+    errors
 }

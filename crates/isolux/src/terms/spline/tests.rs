@@ -75,6 +75,10 @@ fn a_known_law_is_recovered_within_noise() {
     // The residual is the noise: 88 points less some 20.
     assert!((0.7..1.2).contains(&(spline.fit.residual / NOISE)), "{}", spline.fit.residual);
     assert!((0.8..1.4).contains(&(spline.fit.held_out_residual.unwrap() / NOISE)), "{:?}", spline.fit);
+    // A median of 22 has a standard error of a quarter.
+    for used in uses {
+        assert!((0.5..1.9).contains(&(used.held_out_error.unwrap() / NOISE)), "{used:?}");
+    }
 }
 
 #[test]
