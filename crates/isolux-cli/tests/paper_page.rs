@@ -1,4 +1,6 @@
-//! The page of `isolux paper`: the same seed gives the same bytes, every figure is there, and a browser shows them.
+//! The page of `isolux paper`: the same seed gives the same bytes, every figure is there, and a browser shows them. Ignored
+//! by default, because it takes minutes without optimization:
+//! `cargo test --release -p isolux-cli --test paper_page -- --ignored`.
 
 #![expect(clippy::expect_used, reason = "a test that cannot run must stop")]
 
@@ -56,6 +58,7 @@ fn opened_in_a_browser(page: &Path, profile: &Path) -> Option<String> {
 }
 
 #[test]
+#[ignore = "takes minutes without optimization"]
 fn every_figure_is_there_and_the_same_seed_gives_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));
