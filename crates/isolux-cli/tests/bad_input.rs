@@ -101,7 +101,10 @@ fn descriptions_that_cannot_be_used() {
         (&deep, &["not valid JSON", "recursion limit"]),
         ("{\"integration_time_us\": 5}", &["field `integration_time_us`", "remove one"]),
         ("{\"distance_kind\": \"z\"}", &["field `intrinsics`", "found nothing"]),
-        ("{\"distance_unit\": \"cm\"}", &["field `distance_unit`: found \"cm\", expected \"m\" or \"mm\""]),
+        (
+            "{\"distance_unit\": \"cm\"}",
+            &["field `distance_unit`: found \"cm\", expected \"m\", \"mm\", or the metres of one unit"],
+        ),
         ("{\"saturated_amplitude\": -1}", &["field `saturated_amplitude`", "a positive number"]),
         ("{\"modulation_frequency_hz\": 1e999}", &["not valid JSON", "out of range"]),
     ];

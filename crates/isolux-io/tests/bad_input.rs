@@ -150,7 +150,7 @@ fn foreign_and_impossible_json() {
     expect(&message("{\"camera\": "), &["recording.json", "not valid JSON"]);
     expect(
         &message(r#"{"distance_unit": "cm"}"#),
-        &["field `distance_unit`: found \"cm\", expected \"m\" or \"mm\""],
+        &["field `distance_unit`: found \"cm\", expected \"m\", \"mm\", or the metres of one unit"],
     );
     expect(&message(r#"{"integration_time_us": -1}"#), &["field `integration_time_us`", "positive"]);
     expect(&message(r#"{"distance_kind": "z"}"#), &["field `intrinsics`: found nothing"]);

@@ -9,10 +9,16 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::codes::Codes;
+use super::distance_unit::DistanceUnit;
 use crate::error::RecordingError;
 
 /// More than any description of a recording takes; a larger file is something else.
 const LONGEST_JSON_BYTES: u64 = 64 << 20;
+
+/// What the field `codes` may hold.
+const CODES: &str = "{\"amplitude\": {\"saturated\": .., \"too_dark\": .., \"invalid\": ..}, \"distance\": {..}}, each a value, \
+     {\"from\": value} or a list of them";
 
 /// What the distance channel measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,17 +29,6 @@ pub enum DistanceKind {
     Radial,
     /// Along the optical axis; made radial on reading.
     Z,
-}
-
-/// Unit of the distance channel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum DistanceUnit {
-    /// Metres.
-    #[serde(rename = "m")]
-    Metre,
-    /// Millimetres.
-    #[serde(rename = "mm")]
-    Millimetre,
 }
 
 /// Intrinsics as recorded, with whatever else stands beside them (distortion coefficients, say).
@@ -71,7 +66,10 @@ pub struct RecordingInfo {
     /// Integration time of all frames in µs, where it is constant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration_time_us: Option<f64>,
-    /// The amplitude code that means saturated, DN.
+    /// Values of amplitude and distance that are no measurements.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub codes: Option<Codes>,
+    /// The amplitude code that means saturated, DN; short for one of the `codes`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub saturated_amplitude: Option<f32>,
     /// The value at which a phase sample clips, DN.
@@ -128,8 +126,9 @@ impl RecordingInfo {
             camera: reader.take("camera", "a string")?,
             modulation_frequency_hz: reader.take_positive("modulation_frequency_hz")?,
             distance_kind: reader.take("distance_kind", "\"radial\" or \"z\"")?,
-            distance_unit: reader.take("distance_unit", "\"m\" or \"mm\"")?,
+            distance_unit: reader.take("distance_unit", DistanceUnit::EXPECTED)?,
             integration_time_us: reader.take_positive("integration_time_us")?,
+            codes: reader.take("codes", CODES)?,
             saturated_amplitude: reader.take_positive("saturated_amplitude")?.map(|value| value as f32),
             saturated_phase_sample: reader.take_positive("saturated_phase_sample")?.map(|value| value as f32),
             phase_convention: reader.take_convention()?,

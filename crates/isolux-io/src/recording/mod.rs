@@ -4,7 +4,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `element`, `info`, `metadata` | number types; `recording.json`; what is known of a recording |
+//! | `element`, `codes`, `distance_unit` | number types; values that are no measurements; metres per unit |
+//! | `info`, `metadata` | `recording.json`; what is known of a recording |
 //! | `channels` | the channels with a meaning: name, dimensions, flag |
 //! | `source` | [`ChannelSource`]: what a format has to deliver |
 //! | `reading` | [`Recording`]: what readers see |
@@ -19,6 +20,8 @@
 
 mod assemble;
 mod channels;
+mod codes;
+mod distance_unit;
 mod element;
 mod info;
 mod metadata;
@@ -30,8 +33,10 @@ mod source;
 mod writer;
 
 pub use assemble::Assembled;
+pub use codes::{ChannelCodes, Code, Codes, CodesFrom, OneOrMore};
+pub use distance_unit::DistanceUnit;
 pub use element::{ByteOrder, Element, ElementType, Number};
-pub use info::{DistanceKind, DistanceUnit, RecordedIntrinsics, RecordingInfo};
+pub use info::{DistanceKind, RecordedIntrinsics, RecordingInfo};
 pub use metadata::{Access, ChannelInfo, Metadata, Storage};
 pub use open::open;
 pub use reading::{Recording, for_each_frame};

@@ -2,8 +2,9 @@
 
 use isolux::{Intrinsics, Plane};
 
+use crate::recording::distance_unit::DistanceUnit;
 use crate::recording::element::ElementType;
-use crate::recording::info::{DistanceKind, DistanceUnit, RecordingInfo};
+use crate::recording::info::{DistanceKind, RecordingInfo};
 
 /// What turns stored distances into radial ones in metres.
 #[derive(Debug)]
@@ -16,11 +17,9 @@ pub(super) struct DistanceScale {
 }
 
 impl DistanceScale {
-    /// `element` is the type of the stored distances. Integers are millimetres and floats metres, as in REP 118,
-    /// unless the recording says otherwise.
+    /// `element` is the type of the stored distances.
     pub(super) fn new(info: &RecordingInfo, element: Option<ElementType>) -> Self {
-        let integer = element.is_some_and(ElementType::is_integer);
-        let default = if integer { DistanceUnit::Millimetre } else { DistanceUnit::Metre };
+        let default = element.map_or(DistanceUnit::Metre, DistanceUnit::usual);
         let depths = info.distance_kind == Some(DistanceKind::Z);
         let intrinsics = info.intrinsics.as_ref().filter(|_| depths).map(|intrinsics| intrinsics.pinhole);
         Self { unit: info.distance_unit.unwrap_or(default), intrinsics, radial_per_depth: None }
@@ -28,9 +27,8 @@ impl DistanceScale {
 
     /// Converts in place. Invalid distances (0, negative, NaN) stay invalid: both steps keep the sign.
     pub(super) fn apply(&mut self, distance: &mut Plane<f32>) {
-        if self.unit == DistanceUnit::Millimetre {
-            // A division, not a product with 0.001: it rounds once.
-            distance.values_mut().iter_mut().for_each(|value| *value /= 1000.0);
+        if self.unit != DistanceUnit::Metre {
+            distance.values_mut().iter_mut().for_each(|value| *value = self.unit.to_metres(*value));
         }
         if let Some(intrinsics) = &self.intrinsics {
             let shape = distance.shape();

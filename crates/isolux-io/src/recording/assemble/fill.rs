@@ -3,6 +3,7 @@
 use isolux::{Channels, Frame, PixelFlags, Plane, phase};
 
 use super::bins;
+use super::codes;
 use super::distance::DistanceScale;
 use super::loaded::Loaded;
 use crate::error::RecordingError;
@@ -64,7 +65,7 @@ pub(super) fn fill(
     }
     if wanted.contains(Channels::DISTANCE) {
         let distance_m = frame.distance_m.get_or_insert_with(|| Plane::filled(shape, f32::NAN));
-        fill_distance(loaded, bins, &mut scratch.distance_scale, distance_m)?;
+        fill_distance(loaded, bins, &mut scratch.distance_scale, distance_m, &mut frame.flags)?;
     } else {
         frame.distance_m = None;
     }
@@ -95,6 +96,9 @@ fn fill_amplitude(
         phase::amplitude_into(bins, &mut frame.amplitude).map_err(|error| unequal(loaded, &error))?;
     }
     frame.flag_amplitude(loaded.metadata.info.saturated_amplitude);
+    if let Some(codes) = &loaded.metadata.info.codes {
+        codes::amplitude(&codes.amplitude, frame);
+    }
     Ok(())
 }
 
@@ -103,8 +107,12 @@ fn fill_distance(
     bins: Option<&[Plane<f32>; 4]>,
     scale: &mut DistanceScale,
     distance_m: &mut Plane<f32>,
+    flags: &mut Plane<PixelFlags>,
 ) -> Result<(), RecordingError> {
     if loaded.plane(Channels::DISTANCE, distance_m)? {
+        if let Some(codes) = &loaded.metadata.info.codes {
+            codes::distance(&codes.distance, distance_m, flags);
+        }
         scale.apply(distance_m);
     } else if let (Some(bins), Some(frequency_hz)) = (bins, loaded.metadata.info.modulation_frequency_hz) {
         // The bins are in the paper's sign already.

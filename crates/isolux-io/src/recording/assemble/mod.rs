@@ -7,6 +7,7 @@
 mod assembled;
 mod bins;
 mod check;
+mod codes;
 mod cursor;
 mod distance;
 mod fill;
