@@ -29,7 +29,7 @@ fn words(advice: &Advice) -> String {
         Advice::ReferenceDistance { distance_m } => {
             return setting("--reference-distance-m", *distance_m);
         }
-        Advice::WriteField(field) => return format!("write {} into its recording.json", json(field)),
+        Advice::WriteField(field) => return self::field(field),
         Advice::Calibrate => "`isolux calibrate` measures them",
         Advice::GiveNoise => {
             "give it with --read-noise-dn and --shot-noise-dn2-per-dn, or fit it with \
@@ -47,6 +47,9 @@ fn words(advice: &Advice) -> String {
             "write {\"intrinsics\": {\"fx\": .., \"fy\": .., \"cx\": .., \"cy\": ..}} (pixels) into its recording.json"
         }
         Advice::GiveModulationFrequency => "give it with --modulation-frequency-hz",
+        Advice::TakeOriginal => "take the recording that it was made from",
+        Advice::Diagnose => "see `isolux diagnose`",
+        Advice::RecordBrighter => "record with longer integration times or nearer",
         Advice::SkipFrames => "drop the first ones with --skip-frames",
         Advice::Window => "use another --window",
         Advice::AcceptPoorFit => "record again, or take it as it is with --accept-poor-fit",
@@ -55,12 +58,31 @@ fn words(advice: &Advice) -> String {
     fixed.to_owned()
 }
 
-/// A field of `recording.json`, as it is written there.
-fn json(field: &RecordingField) -> String {
-    match field {
+/// What to write into `recording.json`.
+fn field(field: &RecordingField) -> String {
+    let json = match field {
         RecordingField::SaturatedAmplitude { value_dn } => format!("\"saturated_amplitude\": {value_dn}"),
-        _ => String::new(),
-    }
+        RecordingField::InvalidDistance { value } => {
+            format!("\"codes\": {{\"distance\": {{\"invalid\": {value}}}}}")
+        }
+        RecordingField::DistanceUnit { metres } => match metres {
+            1.0 => "\"distance_unit\": \"m\"".to_owned(),
+            0.001 => "\"distance_unit\": \"mm\"".to_owned(),
+            metres => format!("\"distance_unit\": {metres}"),
+        },
+        RecordingField::TimesInMicroseconds { factor } => {
+            return format!("multiply integration_time_us by {factor}");
+        }
+        RecordingField::ModulationFrequency => {
+            return "correct \"modulation_frequency_hz\" or \"distance_unit\" in its recording.json"
+                .to_owned();
+        }
+        RecordingField::Intrinsics => {
+            return "scale \"intrinsics\" in its recording.json to the size of the frames".to_owned();
+        }
+        _ => return String::new(),
+    };
+    format!("write {json} into its recording.json")
 }
 
 fn setting(option: &str, value: Option<f64>) -> String {

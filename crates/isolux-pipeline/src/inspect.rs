@@ -1,15 +1,17 @@
 //! Looks at some frames of a recording for what contradicts its description.
 
 use isolux::inspect::{Claims, Inspector, Suspicion};
-use isolux::{Channels, Frame};
-use isolux_io::RecordingInfo;
-use isolux_io::recording::ChannelInfo;
+use isolux::{Channels, Frame, Plane, ShapeError};
+use isolux_io::recording::{ChannelInfo, DistanceUnit};
 
 use crate::error::PipelineError;
-use crate::observer::{Observer, Progress, Work};
+use crate::observer::Observer;
 use crate::remark::Remark;
 use crate::source::{FrameSource, SourceFacts};
+use crate::standardize::{PROVENANCE, VALUES};
 
+/// The stored channel of the distances.
+const DISTANCE: &str = "distance";
 /// Frames that are looked at, at most.
 const MOST_FRAMES: usize = 16;
 /// Frames that are looked at of any recording that has so many.
@@ -32,19 +34,25 @@ pub fn inspect(
     let facts = source.facts();
     let Some(count) = facts.frame_count else { return Ok(Vec::new()) };
     let frames = frames(count, facts.shape.pixels());
-    let mut progress = Progress::start(observer, Work::Inspecting, Some(frames.len()));
-    let mut inspector = Inspector::new(facts.shape, claims(&facts, &source.stored_channels()));
-    let mut frame = Frame::new(facts.shape);
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let stored = source.stored_channels();
+    let mut inspector = Inspector::new(facts.shape, claims(&facts, &stored));
+    let (mut frame, mut distances) = (Frame::new(facts.shape), Plane::filled(facts.shape, f32::NAN));
+    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::TARGET;
     for index in frames {
-        progress.check()?;
-        if source.read(index, wanted & facts.available, &mut frame)? {
-            let pushed = inspector.push(index, &frame);
-            pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))?;
+        if observer.cancelled() {
+            return Err(PipelineError::Interrupted);
         }
-        progress.step();
+        if source.read(index, wanted & facts.available, &mut frame)? {
+            let fits = |pushed: Result<(), ShapeError>| {
+                pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
+            };
+            fits(inspector.push(index, &frame))?;
+            if stored.iter().any(|channel| channel.name == DISTANCE) {
+                source.read_plane(DISTANCE, index, &mut distances)?;
+                fits(inspector.push_stored_distances(&frame, &distances))?;
+            }
+        }
     }
-    progress.finish();
     Ok(inspector.finish())
 }
 
@@ -62,15 +70,18 @@ pub(crate) fn remark_on(
 }
 
 fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
-    let RecordingInfo { modulation_frequency_hz, distance_unit, .. } = &facts.info;
-    let integer = |name| stored.iter().any(|channel| channel.name == name && channel.element.is_integer());
+    let has = |name: &str| stored.iter().any(|channel| channel.name == name);
+    let distance = stored.iter().find(|channel| channel.name == DISTANCE);
+    let usual = distance.map(|channel| DistanceUnit::usual(channel.element));
+    let info = &facts.info;
     Claims {
-        modulation_frequency_hz: *modulation_frequency_hz,
-        amplitude_is_integer: integer("amplitude"),
-        distance_is_integer: integer("distance"),
-        distance_unit_stated: distance_unit.is_some(),
+        modulation_frequency_hz: info.modulation_frequency_hz,
+        distance_unit_stated: info.distance_unit.is_some(),
+        metres_per_unit: usual.map(|usual| info.distance_unit.unwrap_or(usual).metres()),
         amplitude_from_phase_samples: facts.amplitude_from_phase_samples,
-        ..Claims::default()
+        principal_point: facts.intrinsics().map(|pinhole| [pinhole.cx, pinhole.cy]),
+        // With its input, the amplitude is that of the input.
+        standardized: info.other.contains_key(PROVENANCE) && !has(VALUES),
     }
 }
 

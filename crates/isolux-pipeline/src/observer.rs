@@ -17,8 +17,6 @@ pub enum Work {
     EstimatingNoise,
     /// Estimating the ambient light of a recording.
     EstimatingAmbientLight,
-    /// Looking at some frames of a recording.
-    Inspecting,
     /// Evaluating a recording before and after standardization.
     Evaluating,
     /// Diagnosing a recording.
@@ -44,7 +42,6 @@ impl fmt::Display for Work {
             Self::ReadingTimes => "reading times",
             Self::EstimatingNoise => "estimating the noise",
             Self::EstimatingAmbientLight => "estimating the ambient light",
-            Self::Inspecting => "looking at the recording",
             Self::Evaluating => "evaluating",
             Self::Diagnosing => "diagnosing",
             Self::ExposureSweep => "exposure sweep",

@@ -1,6 +1,7 @@
 //! Planning a chain for a recording.
 
 use isolux::calibrate::NoiseSurvey;
+use isolux::inspect::Suspicion;
 use isolux::standardize::SigmaStep;
 use isolux::terms::NoiseModel;
 use isolux::{Calibration, Channels, Choice, RecordingTraits, Standardizer};
@@ -40,7 +41,8 @@ pub fn plan_with(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<Standardizer, PipelineError> {
-    inspect::remark_on(source, observer)?;
+    let suspicions = inspect::remark_on(source, observer)?;
+    traits.already = Suspicion::already_corrected(&suspicions);
     let mut choice = *choice;
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
     if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {

@@ -63,6 +63,7 @@ impl Remark {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
+            Self::Plan(note) if note.is_warning() => Severity::Warning,
             Self::Plan(_) | Self::NoiseFromNeighbours { .. } | Self::AmbientLightUnknown { .. } => {
                 Severity::Note
             }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use isolux::{Channels, Frame, Intrinsics, RecordingTraits, Shape};
+use isolux::{Channels, Frame, Intrinsics, Plane, RecordingTraits, Shape};
 use isolux_io::recording::{ChannelInfo, Storage};
 use isolux_io::{Recording, RecordingInfo};
 
@@ -49,11 +49,11 @@ impl SourceFacts {
     #[must_use]
     pub fn traits(&self) -> RecordingTraits {
         RecordingTraits {
-            channels: self.available,
             shape: Some(self.shape),
             intrinsics: self.intrinsics(),
             modulation_frequency_hz: self.info.modulation_frequency_hz,
-            ambient_light: None,
+            camera: self.info.camera.clone(),
+            ..self.available.into()
         }
     }
 }
@@ -77,6 +77,20 @@ pub trait FrameSource {
         Vec::new()
     }
 
+    /// Reads one frame of a stored image as it is stored, without units, into `plane`, whose memory is reused.
+    ///
+    /// # Errors
+    /// [`PipelineError`] when the channel is not stored, is no image, or cannot be read.
+    fn read_plane(
+        &mut self,
+        channel: &str,
+        index: usize,
+        plane: &mut Plane<f32>,
+    ) -> Result<(), PipelineError> {
+        let _ = (index, plane);
+        Err(not_stored(self.facts().name, channel))
+    }
+
     /// Reads one frame of a stored channel verbatim into `bytes`: C order, little-endian, in the channel's own element
     /// type.
     ///
@@ -84,9 +98,13 @@ pub trait FrameSource {
     /// [`PipelineError`] when the channel is not stored or cannot be read.
     fn read_raw(&mut self, channel: &str, index: usize, bytes: &mut Vec<u8>) -> Result<(), PipelineError> {
         let _ = (index, bytes);
-        let cause = format!("no stored channel `{channel}` found, one expected").into();
-        Err(PipelineError::Frames { recording: self.facts().name, cause })
+        Err(not_stored(self.facts().name, channel))
     }
+}
+
+fn not_stored(recording: String, channel: &str) -> PipelineError {
+    let cause = format!("no stored channel `{channel}` found, one expected").into();
+    PipelineError::Frames { recording, cause }
 }
 
 impl FrameSource for dyn Recording + '_ {
@@ -116,6 +134,15 @@ impl FrameSource for dyn Recording + '_ {
     fn read_raw(&mut self, channel: &str, index: usize, bytes: &mut Vec<u8>) -> Result<(), PipelineError> {
         Ok(Recording::read_raw(self, channel, index, bytes)?)
     }
+
+    fn read_plane(
+        &mut self,
+        channel: &str,
+        index: usize,
+        plane: &mut Plane<f32>,
+    ) -> Result<(), PipelineError> {
+        Ok(Recording::read_plane(self, channel, index, plane)?)
+    }
 }
 
 impl<S: FrameSource + ?Sized> FrameSource for Box<S> {
@@ -133,6 +160,15 @@ impl<S: FrameSource + ?Sized> FrameSource for Box<S> {
 
     fn read_raw(&mut self, channel: &str, index: usize, bytes: &mut Vec<u8>) -> Result<(), PipelineError> {
         (**self).read_raw(channel, index, bytes)
+    }
+
+    fn read_plane(
+        &mut self,
+        channel: &str,
+        index: usize,
+        plane: &mut Plane<f32>,
+    ) -> Result<(), PipelineError> {
+        (**self).read_plane(channel, index, plane)
     }
 }
 

@@ -25,6 +25,25 @@ pub enum RecordingField {
         /// The code, DN.
         value_dn: f32,
     },
+    /// A distance that is none.
+    InvalidDistance {
+        /// The code, as it is stored.
+        value: f32,
+    },
+    /// The unit of the distances.
+    DistanceUnit {
+        /// Metres for one unit.
+        metres: f64,
+    },
+    /// The integration times, which are to be in µs.
+    TimesInMicroseconds {
+        /// What they must be multiplied by.
+        factor: f64,
+    },
+    /// The modulation frequency.
+    ModulationFrequency,
+    /// The intrinsics, of the resolution of the frames.
+    Intrinsics,
 }
 
 /// One thing to do.
@@ -78,4 +97,10 @@ pub enum Advice {
     AcceptPoorFit,
     /// State this in the description of the recording.
     WriteField(RecordingField),
+    /// Standardize the recording that this one was made from.
+    TakeOriginal,
+    /// Find out from all frames what the amplitudes depend on.
+    Diagnose,
+    /// Record with more light or longer integration times.
+    RecordBrighter,
 }

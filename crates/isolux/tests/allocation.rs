@@ -153,11 +153,9 @@ fn a_stream_tells_the_bytes_that_it_holds() {
     let shape = Shape::new(48, 64);
     let frame = frame(shape, 900, true);
     let traits = RecordingTraits {
-        channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
         shape: Some(shape),
         intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
-        modulation_frequency_hz: None,
-        ambient_light: None,
+        ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     for rule in DenoiseRule::ALL {
         let choice = Choice {
@@ -184,11 +182,9 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     let shape = Shape::new(48, 64);
     let intrinsics = Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 };
     let traits = RecordingTraits {
-        channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
         shape: Some(shape),
         intrinsics: Some(intrinsics),
-        modulation_frequency_hz: None,
-        ambient_light: None,
+        ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     let profile = Profile {
         version: 1,

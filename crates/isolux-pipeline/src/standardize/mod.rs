@@ -14,7 +14,7 @@ use crate::error::PipelineError;
 use crate::observer::{Observer, Progress, Work};
 use crate::source::{FrameSource, SourceFacts};
 
-pub use self::provenance::{step_json, steps};
+pub use self::provenance::{PROVENANCE, step_json, steps};
 pub use self::sink::{FLAGS, FrameSink, NativeSink, OutputFormat, OutputFrame, SIGMA, VALUES};
 pub use self::summary::Summary;
 

@@ -8,6 +8,9 @@ use serde_json::{Map, Value, json};
 use crate::brackets::Brackets;
 use crate::source::SourceFacts;
 
+/// The field of a standardized recording's description that holds the record.
+pub const PROVENANCE: &str = "standardization";
+
 /// The steps of a chain, in their order: highlights are limited after merging.
 #[must_use]
 pub fn steps(standardizer: &Standardizer, brackets: Option<&Brackets>) -> Vec<AppliedStep> {
@@ -42,7 +45,7 @@ pub(super) fn record(
         info.integration_time_us = None;
     }
     info.other.insert(
-        "standardization".to_owned(),
+        PROVENANCE.to_owned(),
         json!({
             "program": concat!("isolux ", env!("CARGO_PKG_VERSION")),
             "input": facts.name,

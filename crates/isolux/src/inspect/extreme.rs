@@ -1,50 +1,111 @@
-//! Codes that nothing names: many pixels share the largest value, far from all others.
+//! Codes and clips that nothing names: many pixels share an extreme value.
 
-use crate::frame::{Frame, PixelFlags};
+/// A value that fewer of the sampled pixels share may be chance.
+const LEAST_COUNT: usize = 8;
+/// ... or this share of them.
+const LEAST_SHARE: f64 = 5e-4;
+/// A measured value is followed closely by others. A code stands apart: nothing lies between it and the next, over this
+/// share of the larger of the two.
+const GAP_SHARE: f64 = 0.33;
+/// ... for a value that is the largest of some number of bits, as most codes are, over this share.
+const GAP_SHARE_OF_FULL_SCALE: f64 = 0.04;
+/// The values from this fraction of the largest on say how many usually share one.
+const TOP_SHARE: f64 = 0.8;
+/// Where measurements clip, this many times as many pixels share the largest value, ...
+const PILE_UP: f64 = 8.0;
+/// ... and this share of all.
+const LEAST_CLIPPED: f64 = 2e-3;
 
-/// A largest value that fewer of the sampled pixels share may be chance.
-const SHARED_VALUES: usize = 8;
-/// ... and this share of them: a code is no accident.
-const SHARED_SHARE: f64 = 5e-4;
-/// A measured value that clips is followed closely by those just below it. A code stands apart: between it and the
-/// largest of the others nothing lies, over this share of its value.
-const GAP_SHARE: f64 = 0.04;
-
-/// The largest value of a channel, where it is a code.
+/// What an extreme value is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extreme {
-    pub(super) value: f32,
-    /// Share of the pixels with a value that have it, 0..=1.
-    pub(super) share: f64,
-    /// Largest of the other values.
-    pub(super) others: f32,
+pub(super) enum Kind {
+    /// It stands apart: a code.
+    Code,
+    /// Others reach up to it: measurements end there.
+    Clip,
 }
 
-/// Sampled values of one channel.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Values(Vec<f32>);
+/// An extreme value that many pixels share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extreme {
+    pub(super) kind: Kind,
+    pub(super) value: f32,
+    /// Share of the values that are it, 0..=1.
+    pub(super) share: f64,
+    /// The nearest of the other values.
+    pub(super) next: f32,
+}
 
-impl Values {
-    /// Takes every `stride`th amplitude that is valid.
-    pub(super) fn push_amplitudes(&mut self, frame: &Frame, stride: usize) {
-        let values = frame.amplitude.values().iter().zip(frame.flags.values()).step_by(stride);
-        let valid = values.filter(|(_, flags)| !flags.contains(PixelFlags::INVALID));
-        self.0.extend(valid.map(|(&value, _)| value));
+/// The largest of the values, where it is a code or they clip there. The values must be sorted.
+pub(super) fn largest(sorted: &[f32]) -> Option<Extreme> {
+    let value = *sorted.last()?;
+    let others = &sorted[..sorted.partition_point(|&other| other < value)];
+    let next = *others.last()?;
+    let found = shared(sorted.len() - others.len(), sorted.len(), value, next)?;
+    let gap_share = if is_full_scale(value) { GAP_SHARE_OF_FULL_SCALE } else { GAP_SHARE };
+    if f64::from(value - next) > gap_share * f64::from(value) {
+        return Some(Extreme { kind: Kind::Code, ..found });
+    }
+    if f64::from(value - next) > GAP_SHARE_OF_FULL_SCALE * f64::from(value) {
+        return None;
+    }
+    let top = &others[others.partition_point(|&other| f64::from(other) < TOP_SHARE * f64::from(value))..];
+    let levels = top.chunk_by(|a, b| a == b).count().max(1);
+    let usual = top.len() as f64 / levels as f64;
+    let clips =
+        (sorted.len() - others.len()) as f64 > PILE_UP * usual.max(1.0) && found.share > LEAST_CLIPPED;
+    clips.then_some(Extreme { kind: Kind::Clip, ..found })
+}
+
+/// The smallest of the values, where it is a code: nothing lies between it and the next. The values must be sorted.
+pub(super) fn smallest(sorted: &[f32]) -> Option<Extreme> {
+    let value = *sorted.first()?;
+    let others = &sorted[sorted.partition_point(|&other| other <= value)..];
+    let (next, median) = (*others.first()?, *others.get(others.len() / 2)?);
+    let found = shared(sorted.len() - others.len(), sorted.len(), value, next)?;
+    let apart = f64::from(next - value) > GAP_SHARE * f64::from(next)
+        && f64::from(next - value) > GAP_SHARE_OF_FULL_SCALE * f64::from(median);
+    apart.then_some(found)
+}
+
+/// The largest value of 8 to 24 bits, signed or not.
+fn is_full_scale(value: f32) -> bool {
+    (7..=24).any(|bits| value == ((1u32 << bits) - 1) as f32)
+}
+
+fn shared(count: usize, of: usize, value: f32, next: f32) -> Option<Extreme> {
+    let share = count as f64 / of as f64;
+    let many = count >= LEAST_COUNT && share >= LEAST_SHARE;
+    many.then_some(Extreme { kind: Kind::Code, value, share, next })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 000 values from 100 to 2100, and `count` times `value`, sorted.
+    fn values(value: f32, count: usize) -> Vec<f32> {
+        let measured = (0..10_000).map(|i| (100 + i * 7919 % 2001) as f32);
+        let mut values: Vec<f32> = measured.chain(std::iter::repeat_n(value, count)).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        values
     }
 
-    /// Takes every `stride`th distance that is one.
-    pub(super) fn push_distances(&mut self, frame: &Frame, stride: usize) {
-        let values = frame.distance_m.iter().flat_map(|plane| plane.values().iter().step_by(stride));
-        self.0.extend(values.copied().filter(|d| *d > 0.0 && d.is_finite()));
+    #[test]
+    fn a_code_stands_apart_and_a_clip_does_not() {
+        let code = largest(&values(4095.0, 50)).unwrap();
+        assert_eq!((code.kind, code.value, code.next), (Kind::Code, 4095.0, 2100.0));
+        assert_eq!(largest(&values(2100.0, 300)).unwrap().kind, Kind::Clip);
+        let low = smallest(&values(1.0, 50)).unwrap();
+        assert_eq!((low.value, low.next), (1.0, 100.0));
     }
 
-    /// The largest value, where it is a code.
-    pub(super) fn extreme(&mut self) -> Option<Extreme> {
-        let value = self.0.iter().copied().reduce(f32::max)?;
-        let count = self.0.iter().filter(|&&other| other == value).count();
-        let share = count as f64 / self.0.len() as f64;
-        let others = self.0.iter().copied().filter(|&other| other < value).reduce(f32::max)?;
-        let apart = f64::from(value - others) > GAP_SHARE * f64::from(value);
-        (apart && count >= SHARED_VALUES && share >= SHARED_SHARE).then_some(Extreme { value, share, others })
+    #[test]
+    fn measurements_and_single_highlights_are_neither() {
+        for (value, count) in [(500.0, 50), (2100.0, 20), (65535.0, 4), (2500.0, 50)] {
+            assert_eq!(largest(&values(value, count)), None, "{value} {count}");
+            assert_eq!(smallest(&values(value, count)), None, "{value} {count}");
+        }
+        assert_eq!((largest(&[]), largest(&[3.0; 20])), (None, None));
     }
 }

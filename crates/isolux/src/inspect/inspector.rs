@@ -1,9 +1,13 @@
 //! Takes some frames of a recording and names what contradicts its claims.
 
 use super::claims::Claims;
-use super::extreme::Values;
+use super::dark::Dark;
+use super::exponents::Exponents;
+use super::extreme::{Extreme, Kind, largest, smallest};
 use super::suspicion::Suspicion;
-use crate::frame::{Frame, Shape, ShapeError};
+use super::times::Times;
+use super::{distances, lens};
+use crate::frame::{Frame, PixelFlags, Plane, Shape, ShapeError};
 
 /// Sampled pixels of a frame, at most: more would take time without telling more.
 const SAMPLED_PIXELS: usize = 1 << 14;
@@ -14,15 +18,31 @@ const SAMPLED_PIXELS: usize = 1 << 14;
 pub struct Inspector {
     shape: Shape,
     claims: Claims,
-    amplitudes: Values,
-    distances: Values,
+    /// Valid amplitudes, DN.
+    amplitudes: Vec<f32>,
+    /// Distances, m.
+    distances_m: Vec<f32>,
+    /// Distances as they are stored.
+    stored_distances: Vec<f32>,
+    times: Times,
+    dark: Dark,
+    exponents: Exponents,
 }
 
 impl Inspector {
     /// An inspector of frames of `shape`.
     #[must_use]
     pub fn new(shape: Shape, claims: Claims) -> Self {
-        Self { shape, claims, amplitudes: Values::default(), distances: Values::default() }
+        Self {
+            shape,
+            claims,
+            amplitudes: Vec::new(),
+            distances_m: Vec::new(),
+            stored_distances: Vec::new(),
+            times: Times::default(),
+            dark: Dark::default(),
+            exponents: Exponents::default(),
+        }
     }
 
     /// Takes in frame `index` of the recording. Frames come in ascending order and may be left out; neighbours show
@@ -34,22 +54,71 @@ impl Inspector {
         frame.amplitude.expect_shape("amplitude", self.shape)?;
         frame.check_shapes()?;
         let _ = index;
-        // An odd number, so that cameras which alternate something by columns are seen whole.
-        let stride = self.shape.pixels().div_ceil(SAMPLED_PIXELS) | 1;
-        self.amplitudes.push_amplitudes(frame, stride);
-        self.distances.push_distances(frame, stride);
+        let stride = self.stride();
+        let amplitudes = frame.amplitude.values().iter().zip(frame.flags.values()).step_by(stride);
+        let valid = amplitudes.filter(|(_, flags)| !flags.contains(PixelFlags::INVALID));
+        self.amplitudes.extend(valid.map(|(&value, _)| value));
+        if let Some(plane) = &frame.distance_m {
+            let sampled = plane.values().iter().step_by(stride).copied();
+            self.distances_m.extend(sampled.filter(|&d| is_measured(d)));
+        }
+        self.times.push(frame, stride);
+        self.dark.push(frame, stride);
+        self.exponents.push(frame, stride);
         Ok(())
+    }
+
+    /// Takes in the distances of a frame as they are stored: codes are equal before a lens is applied to them, not after.
+    /// `frame` tells which of them are distances.
+    ///
+    /// # Errors
+    /// [`ShapeError::Mismatch`] when the plane is not of the inspector's shape.
+    pub fn push_stored_distances(&mut self, frame: &Frame, stored: &Plane<f32>) -> Result<(), ShapeError> {
+        stored.expect_shape("distance", self.shape)?;
+        let Some(plane) = &frame.distance_m else { return Ok(()) };
+        let pairs = plane.values().iter().zip(stored.values()).step_by(self.stride());
+        self.stored_distances.extend(pairs.filter(|(d, _)| is_measured(**d)).map(|(_, &stored)| stored));
+        Ok(())
+    }
+
+    /// An odd number, so that cameras which alternate something by columns are seen whole.
+    fn stride(&self) -> usize {
+        self.shape.pixels().div_ceil(SAMPLED_PIXELS) | 1
     }
 
     /// What contradicts the claims, most important first. Empty where nothing does.
     #[must_use]
     pub fn finish(mut self) -> Vec<Suspicion> {
-        let _ = self.claims.standardized;
-        let amplitude = self.amplitudes.extreme().map(|code| Suspicion::AmplitudeCode {
-            value_dn: code.value,
-            share: code.share,
-            others_dn: code.others,
-        });
-        amplitude.into_iter().collect()
+        self.amplitudes.sort_unstable_by(f32::total_cmp);
+        self.stored_distances.sort_unstable_by(f32::total_cmp);
+        let standardized = self.claims.standardized.then_some(Suspicion::Standardized);
+        let distances = distances::suspicion(&self.distances_m, &self.claims);
+        let codes = [largest(&self.stored_distances), smallest(&self.stored_distances)];
+        let codes = codes.into_iter().flatten().filter(|found| found.kind == Kind::Code);
+        let mut found: Vec<Suspicion> = standardized.into_iter().collect();
+        found.extend(distances);
+        found.extend(self.times.suspicion());
+        found.extend(largest(&self.amplitudes).map(of_amplitudes));
+        found.extend(codes.map(of_distances));
+        found.extend(self.exponents.suspicions());
+        found.extend(lens::suspicion(self.claims.principal_point, self.shape));
+        found.extend(self.dark.suspicion());
+        found
     }
+}
+
+fn is_measured(distance: f32) -> bool {
+    distance > 0.0 && distance.is_finite()
+}
+
+fn of_amplitudes(found: Extreme) -> Suspicion {
+    let (value_dn, share, others_dn) = (found.value, found.share, found.next);
+    match found.kind {
+        Kind::Code => Suspicion::AmplitudeCode { value_dn, share, others_dn },
+        Kind::Clip => Suspicion::AmplitudeClips { value_dn, share },
+    }
+}
+
+fn of_distances(found: Extreme) -> Suspicion {
+    Suspicion::DistanceCode { value: found.value, share: found.share, others: found.next }
 }

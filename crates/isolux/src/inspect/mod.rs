@@ -25,9 +25,14 @@
 //! ```
 
 mod claims;
+mod dark;
+mod distances;
+mod exponents;
 mod extreme;
 mod inspector;
+mod lens;
 mod suspicion;
+mod times;
 
 pub use claims::Claims;
 pub use inspector::Inspector;

@@ -1,5 +1,6 @@
 //! Decides the steps that will be applied, from the user's choice, the calibration and the recording's traits.
 
+use super::other_camera;
 use super::planner::Planner;
 use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
@@ -56,6 +57,7 @@ impl Plan {
         let profile = profile::plan(&mut planner)?;
         let angle = angle::plan(&mut planner)?;
         note_textbook(&mut planner);
+        other_camera::note(&mut planner);
         let specular = specular::plan(&mut planner);
         let sigma = sigma::plan(&mut planner, distance.is_some())?;
         let floor = calibration.and_then(|c| c.noise_floor).map(|floor| floor.low_signal_below_dn as f32);

@@ -18,11 +18,32 @@ pub struct RecordingTraits {
     /// Its ambient light, without which the response cannot tell the fill of a pixel from amplitude and distance.
     /// [`AmbientSurvey`](crate::calibrate::AmbientSurvey) estimates it.
     pub ambient_light: Option<AmbientLight>,
+    /// Name of its camera.
+    pub camera: Option<String>,
+    /// What its amplitudes no longer show, because something upstream has taken it out.
+    pub already: AlreadyCorrected,
+}
+
+/// Effects that are no longer in the amplitudes of a recording. [`Inspector`](crate::inspect::Inspector) finds them out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AlreadyCorrected {
+    /// The integration time.
+    pub time: bool,
+    /// The distance.
+    pub distance: bool,
 }
 
 /// The traits of a recording of which only the channels are known.
 impl From<Channels> for RecordingTraits {
     fn from(channels: Channels) -> Self {
-        Self { channels, shape: None, intrinsics: None, modulation_frequency_hz: None, ambient_light: None }
+        Self {
+            channels,
+            shape: None,
+            intrinsics: None,
+            modulation_frequency_hz: None,
+            ambient_light: None,
+            camera: None,
+            already: AlreadyCorrected::default(),
+        }
     }
 }

@@ -19,7 +19,7 @@ pub struct AppliedStep {
 }
 
 /// Something that the user should know about the plan.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
     /// There is no calibration: the steps are textbook physics, not measured on this camera.
@@ -53,9 +53,34 @@ pub enum Note {
     },
     /// The calibration has no angle term; Lambert's cosine is used.
     Lambert,
+    /// `best` leaves out a step, because the amplitudes of the recording no longer show the effect.
+    AlreadyCorrected {
+        /// The effect.
+        effect: &'static str,
+    },
+    /// The calibration is that of another camera.
+    OtherCamera {
+        /// The camera that was calibrated.
+        calibrated: String,
+        /// The recording's camera.
+        recorded: String,
+    },
+    /// The calibration is for another modulation frequency.
+    OtherFrequency {
+        /// The frequency that was calibrated, Hz.
+        calibrated_hz: f64,
+        /// The recording's frequency, Hz.
+        recorded_hz: f64,
+    },
 }
 
 impl Note {
+    /// True where the result may be wrong; else it is good to know.
+    #[must_use]
+    pub fn is_warning(&self) -> bool {
+        matches!(self, Self::OtherCamera { .. } | Self::OtherFrequency { .. })
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
@@ -68,7 +93,9 @@ impl Note {
             Self::ChannelMissing { .. }
             | Self::FillUnknown
             | Self::NothingToDenoise
+            | Self::AlreadyCorrected { .. }
             | Self::ProfileFormat { .. } => None,
+            Self::OtherCamera { .. } | Self::OtherFrequency { .. } => Some(Advice::Calibrate),
         }
     }
 }
@@ -103,6 +130,21 @@ impl fmt::Display for Note {
             ),
             Self::Lambert => f.write_str(
                 "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets",
+            ),
+            Self::AlreadyCorrected { effect } => {
+                write!(f, "the amplitudes no longer depend on the {effect}: this step is left out")
+            }
+            Self::OtherCamera { calibrated, recorded } => write!(
+                f,
+                "the calibration is that of `{calibrated}`, the recording is from `{recorded}`: saturation, distance law \
+                 and profile differ from camera to camera"
+            ),
+            Self::OtherFrequency { calibrated_hz, recorded_hz } => write!(
+                f,
+                "the calibration is for a modulation frequency of {} MHz, the recording has {} MHz: distances and their \
+                 law differ",
+                calibrated_hz / 1e6,
+                recorded_hz / 1e6
             ),
         }
     }

@@ -54,6 +54,10 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<Option<PlannedDistance>,
 fn default_step(planner: &mut Planner<'_>) -> DistanceStep {
     match (planner.choice.method, planner.calibration) {
         (Method::Paper, _) => DistanceStep::Cubic,
+        (Method::Best, _) if planner.traits.already.distance => {
+            planner.notes.push(Note::AlreadyCorrected { effect: "distance" });
+            DistanceStep::None
+        }
         (Method::Best, None) => DistanceStep::Square,
         (Method::Best, Some(calibration)) => calibration.terms.best_distance().unwrap_or_else(|| {
             if planner.traits.channels.contains(Channels::DISTANCE) {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::response::{self, PlannedResponse, SaturationCorrection};
 use crate::advice::RecordingKind;
-use crate::calibration::REFERENCE_TIME_US;
+use crate::calibration::{Calibration, REFERENCE_TIME_US};
 use crate::frame::{Channels, Frame, IntegrationTime, PixelFlags};
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
@@ -22,10 +22,10 @@ pub(crate) enum TimePlan {
         response: ScalarResponse,
         reference_us: f64,
     },
-    /// Times above the longest that was calibrated, where there is one, are flagged: pixels may be saturated there.
+    /// Times outside those that were calibrated, where they are known, are flagged.
     Linear {
         reference_us: f64,
-        longest_us: Option<f64>,
+        calibrated_us: Option<[f64; 2]>,
     },
     None,
 }
@@ -47,15 +47,14 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
     }
     let reference_us =
         planner.calibration.and_then(|c| c.reference.integration_time_us).unwrap_or(REFERENCE_TIME_US);
-    let longest_us = planner
-        .calibration
-        .and_then(|c| c.terms.lut.as_ref())
-        .map(|lut| lut.valid_integration_time_us[1])
-        .filter(|_| named.is_none());
+    let calibrated_us = planner.calibration.and_then(calibrated_times_us);
     let (plan, correction, parameters) = match wanted {
         TimeStep::None => return Ok((TimePlan::None, None)),
         TimeStep::Linear => {
-            (TimePlan::Linear { reference_us, longest_us }, None, format!("{reference_us} µs / t"))
+            // Below the calibrated times, pixels are the farther from saturation, and physics holds.
+            let up_to = calibrated_us.filter(|_| named.is_none()).map(|[_, longest_us]| [0.0, longest_us]);
+            let plan = TimePlan::Linear { reference_us, calibrated_us: up_to };
+            (plan, None, format!("{reference_us} µs / t"))
         }
         TimeStep::Lut => {
             let lut = planner.calibration.and_then(|c| c.terms.lut.clone());
@@ -69,12 +68,22 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
                 (TimePlan::Scalar { response, reference_us }, None, words)
             }
             (PlannedResponse::PerPixel(correction), words) => {
-                (TimePlan::Linear { reference_us, longest_us: None }, Some(correction), words)
+                (TimePlan::Linear { reference_us, calibrated_us }, Some(correction), words)
             }
         },
     };
     planner.step("time", term, parameters);
     Ok((plan, correction))
+}
+
+/// The integration times, µs, that the terms of a calibration were fitted on.
+fn calibrated_times_us(calibration: &Calibration) -> Option<[f64; 2]> {
+    let terms = &calibration.terms;
+    let response = terms.response.as_ref();
+    let of_lut = terms.lut.as_ref().map(|lut| lut.valid_integration_time_us);
+    let of_scalar = || response?.scalar.as_ref().map(|scalar| scalar.valid_integration_time_us);
+    let of_pixel = || response?.pixel.as_ref().map(|pixel| pixel.valid_integration_time_us);
+    of_lut.or_else(of_scalar).or_else(of_pixel)
 }
 
 /// The time step of the method; adds a note when `best` does not know the fill of the pixels.
@@ -84,6 +93,10 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
 fn default_step(planner: &mut Planner<'_>) -> TimeStep {
     match (planner.choice.method, planner.calibration) {
         (Method::Paper, _) => TimeStep::Lut,
+        (Method::Best, _) if planner.traits.already.time => {
+            planner.notes.push(Note::AlreadyCorrected { effect: "integration time" });
+            TimeStep::None
+        }
         (Method::Best, None) => TimeStep::Linear,
         (Method::Best, Some(_)) if response::measures_the_fill(planner) => TimeStep::Response,
         (Method::Best, Some(calibration)) => {
@@ -190,8 +203,8 @@ fn answer(plan: &TimePlan, time_us: f64) -> Answer {
     }
     match plan {
         TimePlan::None => (1.0, PixelFlags::empty()),
-        TimePlan::Linear { reference_us, longest_us } => {
-            let beyond = longest_us.is_some_and(|longest_us| time_us > longest_us);
+        TimePlan::Linear { reference_us, calibrated_us } => {
+            let beyond = calibrated_us.is_some_and(|[from, to]| !(from..=to).contains(&time_us));
             let gain = linear::multiplier(time_us, *reference_us) as f32;
             (gain, PixelFlags::TIME_OUT_OF_RANGE.when(beyond))
         }
@@ -240,7 +253,7 @@ mod tests {
         frame.integration_time_us =
             IntegrationTime::PerPixel(Plane::from_vec(Shape::new(3, 3), times.to_vec()).unwrap());
         let (mut memory, mut flags) = (Vec::new(), [PixelFlags::empty(); 9]);
-        let plan = TimePlan::Linear { reference_us: 1000.0, longest_us: None };
+        let plan = TimePlan::Linear { reference_us: 1000.0, calibrated_us: None };
         flags[4] = PixelFlags::INVALID;
         let found = gains(&plan, &frame, &mut memory, &mut flags).unwrap();
         assert_eq!(found.uncovered, Uncovered { refused: 1, extrapolated: 0 });
