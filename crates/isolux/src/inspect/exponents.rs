@@ -148,7 +148,7 @@ mod tests {
             let mut frame = Frame::new(shape);
             let d = |column: usize| 0.5 + 0.08 * column as f64;
             let amplitude = |row: usize, column: usize| {
-                (1.0 + row as f64 / 32.0) * time_us.powf(time) * d(column).powf(distance)
+                (1.0 + row as f64) * time_us.powf(time) * d(column).powf(distance)
             };
             frame.amplitude = Plane::from_fn(shape, |row, column| amplitude(row, column) as f32);
             frame.distance_m = Some(Plane::from_fn(shape, |_, column| d(column) as f32));
