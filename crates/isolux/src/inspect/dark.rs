@@ -2,11 +2,13 @@
 
 use super::suspicion::Suspicion;
 use crate::frame::Frame;
-use crate::numerics::statistics::{SIGMA_PER_MAD, median};
+use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 
-/// Below this ratio of amplitude to noise, half of the image shows nothing. The amplitude of pure noise has the ratio 1.9
-/// (Rayleigh's distribution).
-const LEAST_SIGNAL_TO_NOISE: f64 = 3.0;
+/// Where nine tenths of the image have a ratio of amplitude to noise below this, it shows nothing. For pure noise (Rayleigh's
+/// distribution, means of two pixels) that ratio is 2.8.
+const LEAST_SIGNAL_TO_NOISE: f64 = 3.5;
+/// A target in a dark room fills a part of the image only.
+const QUANTILE: f64 = 0.9;
 /// Pairs of pixels that a frame needs.
 const LEAST_PAIRS: usize = 64;
 
@@ -14,7 +16,7 @@ const LEAST_PAIRS: usize = 64;
 /// compared, because those that follow each other may show other views.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dark {
-    /// Median amplitude over noise, of each frame.
+    /// The amplitude of the brightest tenth over noise, of each frame.
     ratios: Vec<f64>,
 }
 
@@ -34,7 +36,7 @@ impl Dark {
     }
 }
 
-/// Median amplitude over the noise of a pixel.
+/// The amplitude from which on the brightest tenth begins, over the noise of a pixel.
 fn signal_to_noise(pairs: &[[f64; 2]]) -> Option<f64> {
     if pairs.len() < LEAST_PAIRS {
         return None;
@@ -43,7 +45,7 @@ fn signal_to_noise(pairs: &[[f64; 2]]) -> Option<f64> {
     let mut differences: Vec<f64> = pairs.iter().map(|[a, b]| (a - b).abs()).collect();
     let noise = SIGMA_PER_MAD * median(&mut differences)? / std::f64::consts::SQRT_2;
     // Equal neighbours are coarse: they show no noise.
-    (noise > 0.0).then_some(median(&mut means)? / noise)
+    (noise > 0.0).then_some(quantile(&mut means, QUANTILE)? / noise)
 }
 
 #[cfg(test)]

@@ -64,9 +64,10 @@ impl Exponents {
         of_time.into_iter().chain(of_distance).collect()
     }
 
-    /// Exponent of t from pixels that stood still between two frames; the median over the pairs of frames.
+    /// Exponent of t from pixels that stood still between two frames: the largest of all pairs of frames. Saturation at
+    /// long times and noise at short ones reduce it, nothing raises it.
     fn of_time(&self) -> Option<f64> {
-        let mut found = Vec::new();
+        let mut found: Vec<f64> = Vec::new();
         for (at, (time, pixels)) in self.0.iter().enumerate() {
             for (other_time, others) in &self.0[..at] {
                 let (Some(time), Some(other)) = (time, other_time) else { continue };
@@ -76,7 +77,7 @@ impl Exponents {
                 }
             }
         }
-        median(&mut found)
+        found.into_iter().reduce(f64::max)
     }
 
     /// Exponent of d of the label that shows it in most pixels.

@@ -93,9 +93,9 @@ pub enum Suspicion {
     },
     /// The recording says that its amplitudes have been standardized.
     Standardized,
-    /// Half of the image shows nothing but noise.
+    /// Nine tenths of the image show nothing but noise.
     TooDark {
-        /// Median amplitude over its noise.
+        /// The signal-to-noise ratio that they do not reach.
         signal_to_noise: f64,
     },
 }
@@ -196,8 +196,8 @@ impl fmt::Display for Suspicion {
             ),
             Self::TooDark { signal_to_noise } => write!(
                 f,
-                "the amplitudes are little more than noise: half of the image has a signal-to-noise ratio below \
-                 {signal_to_noise:.1} (noise alone has 1.9)"
+                "the amplitudes are little more than noise: nine tenths of the image have a signal-to-noise ratio below \
+                 {signal_to_noise:.1} (of noise alone: 2.8)"
             ),
         }
     }
