@@ -61,6 +61,17 @@ pub enum PipelineError {
         /// The recording.
         recording: String,
     },
+    /// The noise cannot be told from the signal, because there is hardly any.
+    #[error(
+        "`{recording}`: too dark to tell the noise of the amplitude: no group of like pixels reaches a signal-to-noise ratio \
+         of 3, the best has {signal_to_noise:.1}"
+    )]
+    TooDark {
+        /// The recording.
+        recording: String,
+        /// The largest signal-to-noise ratio of the groups.
+        signal_to_noise: f64,
+    },
     /// Brackets should end where an integration time recurs, but a frame has no single integration time.
     #[error(
         "`{recording}`, frame {frame}: found no single integration time, one expected: a bracket ends where a time recurs"
@@ -165,7 +176,7 @@ impl PipelineError {
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
-            Self::NoNoise { .. } => Some(Advice::GiveNoise),
+            Self::NoNoise { .. } | Self::TooDark { .. } => Some(Advice::GiveNoise),
             Self::BracketTime { .. } | Self::NoBrackets { .. } => Some(Advice::GiveBracketLength),
             Self::Merge { .. } => Some(Advice::GiveOrEstimateNoise),
             Self::ChannelKept { .. } => Some(Advice::LeaveInputOut),

@@ -20,7 +20,7 @@ use crate::source::FrameSource;
 /// observer receives what was found and the notes of the plan as remarks.
 ///
 /// # Errors
-/// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`], and those of reading.
+/// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`] and [`PipelineError::TooDark`], and those of reading.
 pub fn plan(
     choice: &Choice,
     calibration: Option<&Calibration>,
@@ -73,5 +73,9 @@ fn estimate_noise(
     if found.spatial {
         observer.remark(Remark::NoiseFromNeighbours { recording: recording.clone() });
     }
-    found.fit(Vec::new()).map(|noise| noise.model()).ok_or(PipelineError::NoNoise { recording })
+    let noise = found.fit(Vec::new()).map(|noise| noise.model());
+    noise.ok_or_else(|| match found.too_dark() {
+        Some(signal_to_noise) => PipelineError::TooDark { recording, signal_to_noise },
+        None => PipelineError::NoNoise { recording },
+    })
 }

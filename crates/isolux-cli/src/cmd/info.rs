@@ -90,7 +90,8 @@ fn possible(metadata: &Metadata, overview: &Overview) -> Vec<String> {
         );
     } else if times >= 2 && !overview.integration_time_per_pixel {
         advice.push(format!(
-            "{times} integration times: if the scene stood still, isolux calibrate --exposure-sweep {path} -o CAMERA.json"
+            "{times} integration times: if the scene stood still, isolux calibrate --exposure-sweep {path} -o CAMERA.json; \
+             --reference-time-us chooses the time at which amplitudes keep their value"
         ));
     }
     advice

@@ -41,9 +41,23 @@ pub(crate) fn run(args: &StandardizeArgs) -> Outcome {
     terminal::print(format!("written: {}", args.output.display()))
 }
 
+/// How many pixels have a value, and how many of these a value that can be trusted.
+fn validity(summary: &Summary) -> String {
+    let share = |count: usize, of: usize| format!("{:.2} %", 100.0 * count as f64 / of.max(1) as f64);
+    let valid = share(summary.valid, summary.pixels);
+    match summary.within_range {
+        within if within == summary.valid => format!("{valid} of the pixels valid"),
+        0 => format!("no pixel within the calibrated ranges; {valid} have a value, which is extrapolated"),
+        within => format!(
+            "{} of the pixels valid and within the calibrated ranges, {valid} with those that are extrapolated",
+            share(within, summary.pixels)
+        ),
+    }
+}
+
 fn describe(summary: &Summary) -> String {
     let share = |count: usize| format!("{:.2} %", 100.0 * count as f64 / summary.pixels.max(1) as f64);
-    let mut lines = vec![format!("{} frames, {} of the pixels valid", summary.frames, share(summary.valid))];
+    let mut lines = vec![format!("{} frames, {}", summary.frames, validity(summary))];
     let remarks = [
         (summary.time_refused, "refused: integration time above the calibrated range, or unknown"),
         (summary.time_extrapolated, "outside the calibrated integration times, continued as 1/t (flagged)"),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use isolux::calibration::{REFERENCE_DISTANCE_M, REFERENCE_TIME_US};
+use isolux::calibration::REFERENCE_DISTANCE_M;
 
 use super::values::positive;
 
@@ -51,9 +51,10 @@ pub(crate) struct CalibrateArgs {
     /// The calibration file to write
     #[arg(short, long, value_name = "CAMERA.json")]
     pub(crate) output: PathBuf,
-    /// Reference integration time: there, amplitudes keep their value, µs
-    #[arg(long, default_value_t = REFERENCE_TIME_US, value_parser = positive)]
-    pub(crate) reference_time_us: f64,
+    /// Reference integration time: there, amplitudes keep their value, µs [default: 8200, or the nearest to it that all
+    /// exposure sweeps cover]
+    #[arg(long, value_parser = positive)]
+    pub(crate) reference_time_us: Option<f64>,
     /// Reference distance: there, amplitudes keep their value, m
     #[arg(long, default_value_t = REFERENCE_DISTANCE_M, value_parser = positive)]
     pub(crate) reference_distance_m: f64,

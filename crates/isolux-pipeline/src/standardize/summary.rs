@@ -12,6 +12,8 @@ pub struct Summary {
     pub pixels: usize,
     /// Pixels with a value.
     pub valid: usize,
+    /// Those of them that no term was extrapolated to.
+    pub within_range: usize,
     /// Measured pixels whose integration time is unknown or above the calibrated range; they become INVALID.
     pub time_refused: usize,
     /// Measured pixels whose integration time is outside the calibrated range; extrapolated as 1/t and flagged.
@@ -32,6 +34,7 @@ impl Summary {
         self.frames += 1;
         self.pixels += frame.pixels;
         self.valid += frame.valid;
+        self.within_range += frame.within_range;
         self.time_refused += frame.time_refused;
         self.time_extrapolated += frame.time_extrapolated;
         self.distance_extrapolated += frame.distance_extrapolated;

@@ -5,7 +5,7 @@ use super::exposure::{self, ExposureCurve, TableError};
 use super::measurements::DistanceSweeps;
 use super::{CalibrateError, CalibrateSettings, FitReport, FitWarning, Measurements, scene, target, verdict};
 use crate::calibration::Calibration;
-use crate::terms::Response;
+use crate::terms::{Lut, Response};
 
 /// The first stage of a calibration: the terms that exposure sweeps determine. The second stage needs the fitted
 /// response to make its frames linear.
@@ -45,6 +45,8 @@ impl ExposureFit {
     /// # Errors
     /// [`CalibrateError::Lut`] when no table can be fitted to a sweep.
     pub fn new(settings: &CalibrateSettings, curves: Vec<ExposureCurve>) -> Result<Self, CalibrateError> {
+        let settings =
+            &settings.with_reference_time(curves.iter().filter_map(|c| Lut::covered_us(&c.samples)));
         let mut calibration = Calibration::new(None, settings.reference);
         let warnings = if curves.is_empty() {
             // Without a table, amplitudes cannot be brought to another time.

@@ -5,7 +5,8 @@ use crate::calibration::{REFERENCE_TIME_US, Reference};
 /// What the user decides about a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrateSettings {
-    /// The conditions under which every multiplier is 1.
+    /// The conditions under which every multiplier is 1. Without an integration time, it is the nearest to that of the
+    /// paper, 8200 µs, that all exposure sweeps cover.
     pub reference: Reference,
     /// Side of the central measurement window of a distance sweep, pixels; 20 in the paper.
     pub window_px: usize,
@@ -40,6 +41,17 @@ impl CalibrateSettings {
     pub(super) fn excludes(&self, integration_time_us: f64) -> bool {
         let same = |excluded: &f64| (integration_time_us / excluded - 1.0).abs() < 1e-4;
         self.exclude_time_us.iter().any(same)
+    }
+
+    /// The same with a reference time: that of the user, or else the nearest to the paper's that all ranges (µs) cover;
+    /// the paper's where they have nothing in common.
+    pub(super) fn with_reference_time(&self, ranges_us: impl Iterator<Item = [f64; 2]>) -> Self {
+        let common = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.max(c), b.min(d)];
+        let covered = ranges_us.reduce(common).filter(|[from, to]| from <= to);
+        let nearest = covered.map_or(REFERENCE_TIME_US, |[from, to]| REFERENCE_TIME_US.clamp(from, to));
+        let mut settings = self.clone();
+        settings.reference.integration_time_us.get_or_insert(nearest);
+        settings
     }
 
     /// The reference time, µs; the paper's where the user gives none.

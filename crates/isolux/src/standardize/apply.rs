@@ -136,7 +136,7 @@ fn scale(plan: &Plan, inputs: &Inputs<'_>, out: &mut Standardized) {
         let pixels = Block { amplitude: &inputs.amplitude[block.clone()], distance_m, gain: gains };
         kernel::pointwise(pixels, &law.polynomial, plan.low_signal_below_dn, values, flags);
         if let (Some(predictor), Some(sigma)) = (&inputs.sigma, &mut out.sigma) {
-            predictor.predict(start, distance_m, values, &mut sigma.values_mut()[block]);
+            predictor.predict(start, distance_m, values, &mut sigma.values_mut()[block], flags);
         }
     }
 }

@@ -47,20 +47,27 @@ pub(super) fn pointwise(
     }
 }
 
-/// The flags that [`tally`] counts.
-pub(super) const TALLIES: [PixelFlags; 4] = [
-    PixelFlags::INVALID,
-    PixelFlags::DISTANCE_OUT_OF_RANGE,
-    PixelFlags::SPECULAR,
-    PixelFlags::ILLUMINATION_OUT_OF_RANGE,
+/// The flags that [`tally`] counts: pixels that have all of the first and none of the second.
+pub(super) const TALLIES: [(PixelFlags, PixelFlags); 5] = [
+    (PixelFlags::INVALID, PixelFlags::empty()),
+    (PixelFlags::DISTANCE_OUT_OF_RANGE, PixelFlags::empty()),
+    (PixelFlags::SPECULAR, PixelFlags::empty()),
+    (PixelFlags::ILLUMINATION_OUT_OF_RANGE, PixelFlags::empty()),
+    (PixelFlags::empty(), PixelFlags::INVALID.union(OUT_OF_RANGE)),
 ];
+
+/// Pixels that a term was extrapolated to.
+const OUT_OF_RANGE: PixelFlags = PixelFlags::TIME_OUT_OF_RANGE
+    .union(PixelFlags::DISTANCE_OUT_OF_RANGE)
+    .union(PixelFlags::ILLUMINATION_OUT_OF_RANGE);
 
 /// Adds the counts of one block. They are kept in u16, the width of the flags, so that the loop vectorizes.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
 pub(super) fn tally(block: &[PixelFlags], totals: &mut [usize; TALLIES.len()]) {
     debug_assert!(block.len() <= usize::from(u16::MAX));
-    for (wanted, total) in TALLIES.iter().zip(totals) {
-        let matches = block.iter().map(|flags| u16::from(flags.contains(*wanted)));
+    for ((wanted, unwanted), total) in TALLIES.iter().zip(totals) {
+        let is_one = |flags: &PixelFlags| flags.contains(*wanted) & !flags.intersects(*unwanted);
+        let matches = block.iter().map(|flags| u16::from(is_one(flags)));
         *total += usize::from(matches.fold(0u16, u16::wrapping_add));
     }
 }

@@ -22,6 +22,8 @@ pub struct Standardized {
 pub struct FrameSummary {
     /// Pixels with a standardized value.
     pub valid: usize,
+    /// Those of them that no term was extrapolated to.
+    pub within_range: usize,
     /// All pixels.
     pub pixels: usize,
     /// Measured pixels whose integration time is unknown or above the table's range; they become INVALID.
@@ -75,9 +77,10 @@ impl FrameSummary {
     pub(super) fn of(flags: &[PixelFlags]) -> Self {
         let mut totals = [0; TALLIES.len()];
         flags.chunks(BLOCK).for_each(|block| tally(block, &mut totals));
-        let [invalid, distance_extrapolated, specular, illumination_extrapolated] = totals;
+        let [invalid, distance_extrapolated, specular, illumination_extrapolated, within_range] = totals;
         Self {
             valid: flags.len() - invalid,
+            within_range,
             pixels: flags.len(),
             distance_extrapolated,
             illumination_extrapolated,

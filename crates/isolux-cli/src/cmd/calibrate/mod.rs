@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CalibrateArgs) -> Outcome {
     output::expect_calibration_or_nothing(&args.output)?;
     let settings = CalibrateSettings {
         reference: Reference {
-            integration_time_us: Some(args.reference_time_us),
+            integration_time_us: args.reference_time_us,
             distance_m: args.reference_distance_m,
         },
         window_px: usize::from(args.window),

@@ -107,6 +107,12 @@ impl NoiseCells {
         self.cells.retain(|cell| cell.integration_time_us.is_none_or(|time_us| time_us <= longest_us));
     }
 
+    /// The largest signal-to-noise ratio of the groups, where all are too dark for a fit.
+    #[must_use]
+    pub fn too_dark(&self) -> Option<f64> {
+        Noise::too_dark(&self.cells)
+    }
+
     /// Fits the noise term to these cells; `None` where they do not determine it.
     #[must_use]
     pub fn fit(&self, fitted_on: Vec<Source>) -> Option<Noise> {

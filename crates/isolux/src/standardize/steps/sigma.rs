@@ -8,10 +8,10 @@
 //! Errors are assumed to be normal, and the value to equal its own expectation. This holds from a signal-to-noise
 //! ratio of about 5 on: below, an amplitude is Rician (too high by `σ_a²/2a`) and the phase is no longer normal.
 
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, NoiseFloor};
 use crate::denoise::Denoiser;
 use crate::frame::phase::metres_per_radian;
-use crate::frame::{Channels, Frame, IntegrationTime};
+use crate::frame::{Channels, Frame, IntegrationTime, PixelFlags};
 use crate::standardize::kernel::BLOCK;
 use crate::standardize::planner::Planner;
 use crate::standardize::report::{Note, PlanError};
@@ -170,13 +170,22 @@ impl<'a> Predictor<'a> {
         Self { variance_left, ..self }
     }
 
-    /// Writes the σ of one block, and subtracts the bias from its values. `start` is the block's first pixel.
-    pub(crate) fn predict(&self, start: usize, distance_m: &[f32], values: &mut [f32], sigma: &mut [f32]) {
+    /// Writes the σ of one block, subtracts the bias from its values, and flags those of low signal. `start` is the
+    /// block's first pixel.
+    pub(crate) fn predict(
+        &self,
+        start: usize,
+        distance_m: &[f32],
+        values: &mut [f32],
+        sigma: &mut [f32],
+        flags: &mut [PixelFlags],
+    ) {
         let count = values.len();
         let amplitude = &self.amplitude[start..start + count];
         let (mut noise, mut slope, mut curvature) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
         self.light.variances(self.frame, start, &mut noise[..count]);
         relative_noise(amplitude, &mut noise[..count]);
+        flag_low_signal(&noise[..count], flags);
         self.law.relative_derivatives(distance_m, &mut slope[..count], &mut curvature[..count]);
         let mut distance_variance = [self.unit_noise_m * self.unit_noise_m; BLOCK];
         if let Some(left) = self.variance_left.get(start..start + count) {
@@ -207,6 +216,16 @@ fn fill_signal_to_noise(frame: &Frame, amplitude: &[f32], light: Light<'_>, out:
 fn relative_noise(amplitude: &[f32], variance: &mut [f32]) {
     for (variance, &a) in variance.iter_mut().zip(amplitude) {
         *variance /= a * a;
+    }
+}
+
+/// Flags the pixels whose amplitude is less than [`NoiseFloor::LOW_SIGNAL_SNR`] times its noise. `noise` is σ_a²/a².
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl+avx512dq", "x86_64+avx2"))]
+fn flag_low_signal(noise: &[f32], flags: &mut [PixelFlags]) {
+    let most = (1.0 / (NoiseFloor::LOW_SIGNAL_SNR * NoiseFloor::LOW_SIGNAL_SNR)) as f32;
+    for (flags, &noise) in flags.iter_mut().zip(noise) {
+        let low = (noise > most) & !flags.contains(PixelFlags::INVALID);
+        *flags |= PixelFlags::LOW_SIGNAL.when(low);
     }
 }
 

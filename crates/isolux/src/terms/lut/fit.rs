@@ -17,26 +17,26 @@ impl Lut {
         Self::of_curve(&curve, reference_time_us)
     }
 
-    /// The same for a curve of unknown scale.
+    /// The integration times, µs, that a table of these samples would cover; `None` without samples.
+    #[must_use]
+    pub fn covered_us(samples: &[ExposureSample]) -> Option<[f64; 2]> {
+        let curve: Vec<RelativeSample> = samples.iter().map(|&sample| sample.into()).collect();
+        let rising = up_to_peak(&curve);
+        Some([rising.first()?.integration_time_us, rising.last()?.integration_time_us])
+    }
+
+    /// The same as [`Lut::fit`] for a curve of unknown scale.
     ///
     /// # Errors
     /// As [`Lut::fit`].
     pub fn of_curve(samples: &[RelativeSample], reference_time_us: f64) -> Result<Self, LutError> {
-        let mut samples = samples.to_vec();
-        samples.sort_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
-        for sample in &samples {
+        for sample in samples {
             let RelativeSample { integration_time_us, relative_amplitude: mean_amplitude, .. } = *sample;
             if !(mean_amplitude > 0.0 && mean_amplitude.is_finite()) {
                 return Err(LutError::NoSignal { integration_time_us, mean_amplitude });
             }
         }
-        let mut peak = 0;
-        for (index, sample) in samples.iter().enumerate() {
-            if sample.relative_amplitude > samples[peak].relative_amplitude {
-                peak = index;
-            }
-        }
-        samples.truncate(peak + 1);
+        let samples = up_to_peak(samples);
         let (Some(first), Some(last), 2..) = (samples.first(), samples.last(), samples.len()) else {
             return Err(LutError::TooFewTimes { found: samples.len() });
         };
@@ -62,6 +62,20 @@ impl Lut {
             warnings: Vec::new(),
         })
     }
+}
+
+/// The samples in the order of their times, up to the peak of the curve: beyond, pixels are over-saturated.
+fn up_to_peak(samples: &[RelativeSample]) -> Vec<RelativeSample> {
+    let mut samples = samples.to_vec();
+    samples.sort_by(|a, b| a.integration_time_us.total_cmp(&b.integration_time_us));
+    let mut peak = 0;
+    for (index, sample) in samples.iter().enumerate() {
+        if sample.relative_amplitude > samples[peak].relative_amplitude {
+            peak = index;
+        }
+    }
+    samples.truncate(peak + 1);
+    samples
 }
 
 /// Relative error (root mean square) of predicting each inner sample from its neighbours.

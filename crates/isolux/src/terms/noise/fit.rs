@@ -27,14 +27,26 @@ const COMPRESSION: f64 = 0.1;
 /// The weights depend on the fitted variances; they settle to a per mille within this many rounds.
 const ROUNDS: usize = 8;
 
+/// Amplitude whose own noise hardly raises its mean.
+fn is_lit(cell: &NoiseCell) -> bool {
+    cell.amplitude_dn > LEAST_SNR * cell.variance_dn2.sqrt()
+}
+
 impl Noise {
+    /// The largest signal-to-noise ratio of cells of which none is bright enough for a fit; `None` where one is, or there
+    /// is none.
+    #[must_use]
+    pub fn too_dark(cells: &[NoiseCell]) -> Option<f64> {
+        let noisy = || cells.iter().filter(|cell| cell.variance_dn2 > 0.0);
+        let ratios = noisy().map(|cell| cell.amplitude_dn / cell.variance_dn2.sqrt());
+        if noisy().any(is_lit) { None } else { ratios.reduce(f64::max) }
+    }
+
     /// Fits the variances to the cells; the read noise is at least `least_read_variance_dn2` (that of the
     /// amplitude's own quantization). `None` where no cell shows any noise.
     #[must_use]
     pub fn fit(cells: &[NoiseCell], least_read_variance_dn2: f64, fitted_on: Vec<Source>) -> Option<Self> {
-        let usable = |cell: &&NoiseCell| {
-            cell.variance_dn2 > 0.0 && cell.amplitude_dn > LEAST_SNR * cell.variance_dn2.sqrt()
-        };
+        let usable = |cell: &&NoiseCell| cell.variance_dn2 > 0.0 && is_lit(cell);
         let cells: Vec<NoiseCell> = cells.iter().filter(usable).copied().collect();
         let timed = cells.iter().all(|cell| cell.integration_time_us.is_some());
         let rows = |cell: &NoiseCell| {
