@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use isolux::{Advice, RecordingField, RecordingKind};
+use isolux::{Advice, PhaseConvention, RecordingField, RecordingKind};
 
 /// A finding, with what can be done about it.
 pub(crate) fn with(finding: impl Display, advice: Option<Advice>) -> String {
@@ -59,6 +59,12 @@ fn words(advice: &Advice) -> String {
 fn json(field: &RecordingField) -> String {
     match field {
         RecordingField::SaturatedAmplitude { value_dn } => format!("\"saturated_amplitude\": {value_dn}"),
+        RecordingField::SaturatedPhaseSample { value_dn } => {
+            format!("\"saturated_phase_sample\": {value_dn}")
+        }
+        RecordingField::PhaseConvention(PhaseConvention { order, reversed }) => {
+            format!("\"phase_convention\": {{\"order\": {order:?}, \"reversed\": {reversed}}}")
+        }
         _ => String::new(),
     }
 }

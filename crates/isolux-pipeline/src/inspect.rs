@@ -3,7 +3,7 @@
 use isolux::inspect::{Claims, Inspector, Suspicion};
 use isolux::{Channels, Frame};
 use isolux_io::RecordingInfo;
-use isolux_io::recording::ChannelInfo;
+use isolux_io::recording::{ChannelInfo, ModulationFrequency};
 
 use crate::error::PipelineError;
 use crate::observer::{Observer, Progress, Work};
@@ -35,7 +35,10 @@ pub fn inspect(
     let mut progress = Progress::start(observer, Work::Inspecting, Some(frames.len()));
     let mut inspector = Inspector::new(facts.shape, claims(&facts, &source.stored_channels()));
     let mut frame = Frame::new(facts.shape);
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME;
+    let wanted = Channels::AMPLITUDE
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::PHASE_SAMPLES;
     for index in frames {
         progress.check()?;
         if source.read(index, wanted & facts.available, &mut frame)? {
@@ -62,14 +65,21 @@ pub(crate) fn remark_on(
 }
 
 fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
-    let RecordingInfo { modulation_frequency_hz, distance_unit, .. } = &facts.info;
+    let RecordingInfo { modulation_frequency_hz, distance_unit, phase_convention, .. } = &facts.info;
+    let is_stored = |name| stored.iter().any(|channel| channel.name == name);
+    // Frames carry the bins of a single frequency, or those of the finer one of two, or I and Q, which are no bins.
+    let iq = is_stored("phase_samples") && !facts.available.contains(Channels::PHASE_SAMPLES);
+    let unwrapped = iq || matches!(modulation_frequency_hz, Some(ModulationFrequency::Pair(_)));
     let integer = |name| stored.iter().any(|channel| channel.name == name && channel.element.is_integer());
     Claims {
-        modulation_frequency_hz: *modulation_frequency_hz,
+        modulation_frequency_hz: modulation_frequency_hz.map(|frequency| frequency.hz()),
         amplitude_is_integer: integer("amplitude"),
         distance_is_integer: integer("distance"),
         distance_unit_stated: distance_unit.is_some(),
         amplitude_from_phase_samples: facts.amplitude_from_phase_samples,
+        phase_convention: phase_convention.unwrap_or_default(),
+        distance_from_phases: is_stored("phase_samples") && !is_stored("distance"),
+        unwrapped_range_m: modulation_frequency_hz.filter(|_| unwrapped).map(|f| f.unambiguous_range_m()),
         ..Claims::default()
     }
 }

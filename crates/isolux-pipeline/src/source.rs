@@ -52,7 +52,7 @@ impl SourceFacts {
             channels: self.available,
             shape: Some(self.shape),
             intrinsics: self.intrinsics(),
-            modulation_frequency_hz: self.info.modulation_frequency_hz,
+            modulation_frequency_hz: self.info.modulation_frequency_hz.map(|frequency| frequency.hz()),
             ambient_light: None,
         }
     }

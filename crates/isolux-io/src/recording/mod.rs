@@ -4,8 +4,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `element`, `info`, `metadata` | number types; `recording.json`; what is known of a recording |
-//! | `channels` | the channels with a meaning: name, dimensions, flag |
+//! | `element`, `frequency`, `info`, `metadata` | number types; one modulation frequency or two; `recording.json`; what is known of a recording |
+//! | `phase_layout`, `channels` | the forms of phase samples; the channels with a meaning: name, dimensions, flag |
 //! | `source` | [`ChannelSource`]: what a format has to deliver |
 //! | `reading` | [`Recording`]: what readers see |
 //! | `assemble` | [`Assembled`]: from the one to the other; units, radial distances, flags, checks |
@@ -20,17 +20,20 @@
 mod assemble;
 mod channels;
 mod element;
+mod frequency;
 mod info;
 mod metadata;
 mod native;
 mod npy;
 mod open;
+mod phase_layout;
 mod reading;
 mod source;
 mod writer;
 
 pub use assemble::Assembled;
 pub use element::{ByteOrder, Element, ElementType, Number};
+pub use frequency::ModulationFrequency;
 pub use info::{DistanceKind, DistanceUnit, RecordedIntrinsics, RecordingInfo};
 pub use metadata::{Access, ChannelInfo, Metadata, Storage};
 pub use open::open;

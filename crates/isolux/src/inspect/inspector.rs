@@ -1,7 +1,9 @@
 //! Takes some frames of a recording and names what contradicts its claims.
 
 use super::claims::Claims;
+use super::clip;
 use super::extreme::Values;
+use super::phase;
 use super::suspicion::Suspicion;
 use crate::frame::{Frame, Shape, ShapeError};
 
@@ -16,13 +18,20 @@ pub struct Inspector {
     claims: Claims,
     amplitudes: Values,
     distances: Values,
+    phases: phase::Sample,
 }
 
 impl Inspector {
     /// An inspector of frames of `shape`.
     #[must_use]
     pub fn new(shape: Shape, claims: Claims) -> Self {
-        Self { shape, claims, amplitudes: Values::default(), distances: Values::default() }
+        Self {
+            shape,
+            claims,
+            amplitudes: Values::default(),
+            distances: Values::default(),
+            phases: phase::Sample::default(),
+        }
     }
 
     /// Takes in frame `index` of the recording. Frames come in ascending order and may be left out; neighbours show
@@ -38,6 +47,7 @@ impl Inspector {
         let stride = self.shape.pixels().div_ceil(SAMPLED_PIXELS) | 1;
         self.amplitudes.push_amplitudes(frame, stride);
         self.distances.push_distances(frame, stride);
+        self.phases.push(frame, &self.claims);
         Ok(())
     }
 
@@ -50,6 +60,14 @@ impl Inspector {
             share: code.share,
             others_dn: code.others,
         });
-        amplitude.into_iter().collect()
+        let phases = self.phases.fault(&self.claims).map(Suspicion::PhaseConvention);
+        amplitude.into_iter().chain(phases).chain(self.clipped_bins()).collect()
+    }
+
+    /// Phase samples that clip. Those at a stated value are flagged, and not among these.
+    fn clipped_bins(&self) -> Option<Suspicion> {
+        let clip = clip::clip(self.phases.bins())?;
+        let clip::Clip { value_dn, share, both_signs } = clip;
+        Some(Suspicion::PhaseSamplesClip { value_dn, share, both_signs })
     }
 }

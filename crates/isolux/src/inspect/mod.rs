@@ -25,10 +25,13 @@
 //! ```
 
 mod claims;
+mod clip;
 mod extreme;
 mod inspector;
+mod phase;
 mod suspicion;
 
 pub use claims::Claims;
 pub use inspector::Inspector;
+pub use phase::{PhaseEvidence, PhaseFault};
 pub use suspicion::Suspicion;
