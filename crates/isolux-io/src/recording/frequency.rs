@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Two frequencies whose common divisor is a smaller share of the higher one tell no distances apart: the steps between
 /// them are within their noise.
 const MOST_WRAPS: f64 = 64.0;
+/// Of two frequencies that are as good as equal, the divisor is the frequency itself.
+const FEWEST_WRAPS: f64 = 1.5;
 /// Frequencies are not exact multiples of their divisor: a remainder of this share of the lower one is none.
 const REMAINDER: f64 = 0.005;
 
@@ -54,7 +56,7 @@ impl ModulationFrequency {
             Self::Single(frequency_hz) => fine(frequency_hz),
             Self::Pair([first, second]) => {
                 let wraps = self.hz() / divisor(first, second);
-                fine(first) && fine(second) && first.min(second) < first.max(second) && wraps < MOST_WRAPS
+                fine(first) && fine(second) && (FEWEST_WRAPS..MOST_WRAPS).contains(&wraps)
             }
         }
     }
@@ -90,7 +92,7 @@ mod tests {
     fn frequencies_that_tell_nothing_apart_are_refused() {
         let usable = |pair| ModulationFrequency::Pair(pair).is_usable();
         assert!(usable([60e6, 75e6]) && usable([80e6, 16e6]));
-        for pair in [[60e6, 60e6], [60e6, 0.0], [-60e6, 75e6], [f64::NAN, 75e6], [61e6, 100e6], [60e6, 60.9e6]] {
+        for pair in [[60e6, 60e6], [60e6, 0.0], [-60e6, 75e6], [f64::NAN, 75e6], [61e6, 100e6], [60e6, 60.1e6]] {
             assert!(!usable(pair), "{pair:?}");
         }
         assert!(!ModulationFrequency::Single(f64::INFINITY).is_usable());
