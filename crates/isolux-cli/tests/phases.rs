@@ -132,7 +132,10 @@ fn the_sign_is_named_and_what_is_named_helps() {
         Take { reversed: true, distance_m: stairs, frequency_hz: 20e6, gain: 900.0, ..TAKE },
     ] {
         let said = remarks(&take.described(""));
-        assert!(said.contains("the amplitude grows with d^") && said.contains("with the sign reversed"), "{said}");
+        assert!(
+            said.contains("the amplitude grows with d^") && said.contains("with the sign reversed"),
+            "{said}"
+        );
         let field = r#""phase_convention": {"order": [0, 1, 2, 3], "reversed": true}"#;
         assert!(said.contains(field), "{said}");
         let helped = remarks(&take.described(&format!(", {field}")));
@@ -230,7 +233,5 @@ fn i_and_q_are_standardized_and_their_sign_is_told() {
             let expected = 600.0 / 0.75f64.powi(2) * 8200.0 / 500.0 * 0.9;
             assert!((f64::from(values[0]) / expected - 1.0).abs() < 1e-4, "{} {expected}", values[0]);
         }
-        let tier = sandbox.run("standardize rec -o none --time response --response-tier phase_samples");
-        assert_ne!(tier.code, Some(0));
     }
 }

@@ -82,7 +82,8 @@ fn i_and_q_that_clip_are_saturated_and_nothing_is_no_distance() {
 
 #[test]
 fn two_frequencies_tell_distances_beyond_the_range_of_each() {
-    let values = |order: [usize; 2]| -> Vec<f64> { order.iter().flat_map(|&set| TWICE[set].concat()).collect() };
+    let values =
+        |order: [usize; 2]| -> Vec<f64> { order.iter().flat_map(|&set| TWICE[set].concat()).collect() };
     for (order, frequencies) in [([0, 1], "6e7, 75e6"), ([1, 0], "75e6, 60e6")] {
         let bins = Array::of("<u2", &[1, 8, 1, 3], &values(order));
         let json = format!(r#"{{"modulation_frequency_hz": [{frequencies}]}}"#);
@@ -140,7 +141,11 @@ fn what_does_not_fit_is_refused_with_field_and_reason() {
         (bins(8), r#"{"modulation_frequency_hz": [6e7]}"#, "two unlike ones"),
         (bins(8), r#"{"modulation_frequency_hz": [6e7, 6.01e7]}"#, "common divisor is at least 1/64"),
         (bins(5), "{}", "expected (N, 4, H, W), (N, 8, H, W) of two frequencies, or (N, 2, H, W) of I and Q"),
-        (iq(), r#"{"phase_convention": {"order": [1, 0, 2, 3]}}"#, "found the order [1, 0, 2, 3], expected no order"),
+        (
+            iq(),
+            r#"{"phase_convention": {"order": [1, 0, 2, 3]}}"#,
+            "found the order [1, 0, 2, 3], expected no order",
+        ),
         (complex("<c8", &[2, 4, 3, 4], (0..96).map(|_| (0.0, 0.0))), "{}", "of complex numbers"),
     ];
     for (bytes, json, expected) in cases {
@@ -154,7 +159,10 @@ fn what_does_not_fit_is_refused_with_field_and_reason() {
         let folder = Folder::with(&[("phase_samples", Array::counting("<u2", &[2, 4, 3, 4]))]);
         folder.write(&format!("{name}.npy"), &iq());
         let message = folder.open().err().expect(name).to_string();
-        assert!(message.contains(name) && message.contains("only `phase_samples` may be complex"), "{message}");
+        assert!(
+            message.contains(name) && message.contains("only `phase_samples` may be complex"),
+            "{message}"
+        );
     }
 }
 

@@ -35,10 +35,8 @@ pub fn inspect(
     let mut progress = Progress::start(observer, Work::Inspecting, Some(frames.len()));
     let mut inspector = Inspector::new(facts.shape, claims(&facts, &source.stored_channels()));
     let mut frame = Frame::new(facts.shape);
-    let wanted = Channels::AMPLITUDE
-        | Channels::DISTANCE
-        | Channels::INTEGRATION_TIME
-        | Channels::PHASE_SAMPLES;
+    let wanted =
+        Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::PHASE_SAMPLES;
     for index in frames {
         progress.check()?;
         if source.read(index, wanted & facts.available, &mut frame)? {

@@ -87,9 +87,9 @@ impl FrameDims {
     /// How a frame is written where the shape is not known, and with `lead` before it.
     pub(crate) fn written(self, lead: &str) -> String {
         match self {
-            Self::Bins => format!(
-                "({lead}4, H, W), ({lead}8, H, W) of two frequencies, or ({lead}2, H, W) of I and Q"
-            ),
+            Self::Bins => {
+                format!("({lead}4, H, W), ({lead}8, H, W) of two frequencies, or ({lead}2, H, W) of I and Q")
+            }
             Self::Iq => format!("({lead}H, W) of complex numbers, or ({lead}2, H, W) of two frequencies"),
             _ => format!("({lead}H, W)"),
         }

@@ -251,7 +251,12 @@ mod tests {
         decode_f64(ElementType::C64, ByteOrder::Big, &[0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0], &mut out);
         assert_eq!(out, [1.0, -2.0]);
         let mut little = Vec::new();
-        append_as_little_endian(ElementType::C64, ByteOrder::Big, &[0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0], &mut little);
+        append_as_little_endian(
+            ElementType::C64,
+            ByteOrder::Big,
+            &[0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0],
+            &mut little,
+        );
         assert_eq!(little, [0, 0, 0x80, 0x3f, 0, 0, 0, 0xc0]);
         decode_f64(ElementType::Bool, ByteOrder::Little, &[7, 0], &mut out);
         assert_eq!(out, [1.0, 0.0]);

@@ -92,7 +92,9 @@ mod tests {
     fn frequencies_that_tell_nothing_apart_are_refused() {
         let usable = |pair| ModulationFrequency::Pair(pair).is_usable();
         assert!(usable([60e6, 75e6]) && usable([80e6, 16e6]));
-        for pair in [[60e6, 60e6], [60e6, 0.0], [-60e6, 75e6], [f64::NAN, 75e6], [61e6, 100e6], [60e6, 60.1e6]] {
+        for pair in
+            [[60e6, 60e6], [60e6, 0.0], [-60e6, 75e6], [f64::NAN, 75e6], [61e6, 100e6], [60e6, 60.1e6]]
+        {
             assert!(!usable(pair), "{pair:?}");
         }
         assert!(!ModulationFrequency::Single(f64::INFINITY).is_usable());

@@ -73,7 +73,11 @@ fn check_channel(channel: &StoredChannel, shape: Shape) -> Result<(), RecordingE
     let kind = FrameDims::of(&channel.name, channel.element);
     if channel.element.is_complex() && !matches!(kind, FrameDims::Iq | FrameDims::Anything) {
         let found = format!("values of type {}", channel.element);
-        return Err(RecordingError::content(&channel.path, found, "real numbers; only `phase_samples` may be complex"));
+        return Err(RecordingError::content(
+            &channel.path,
+            found,
+            "real numbers; only `phase_samples` may be complex",
+        ));
     }
     if !kind.allows(&channel.frame_dims, shape) {
         let allowed: Vec<_> = kind.allowed(shape).iter().map(|dims| dims_text(dims)).collect();

@@ -121,7 +121,8 @@ mod tests {
     fn distances_are_told_apart_over_the_whole_range() {
         let truth = |step: usize| 0.1 + step as f64 * 0.02;
         let error = |step: usize| 0.003 * ((step % 7) as f64 - 3.0);
-        let pixels: Vec<_> = (0..490).map(|step| pixel(truth(step), error(step), -error(step), 100.0)).collect();
+        let pixels: Vec<_> =
+            (0..490).map(|step| pixel(truth(step), error(step), -error(step), 100.0)).collect();
         for (step, found) in unwrapped(&pixels).into_iter().enumerate() {
             assert!((f64::from(found) - truth(step) - error(step)).abs() < 1e-5, "{step}: {found}");
         }
@@ -141,8 +142,9 @@ mod tests {
         assert_eq!(found.iter().filter(|distance_m| distance_m.is_nan()).count(), 3);
         // A frame of noise: the two distances have nothing to do with each other.
         let random = |step: usize| (step * 7919 % 1000) as f64 / 1000.0;
-        let noise: Vec<_> =
-            (0..1000).map(|step| pixel(10.0 * random(step), 0.0, 2.5 * random(step * step + 3), 50.0)).collect();
+        let noise: Vec<_> = (0..1000)
+            .map(|step| pixel(10.0 * random(step), 0.0, 2.5 * random(step * step + 3), 50.0))
+            .collect();
         assert!(unwrapped(&noise).iter().all(|distance_m| distance_m.is_nan()));
     }
 }

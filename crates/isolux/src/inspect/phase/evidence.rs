@@ -59,7 +59,8 @@ impl fmt::Display for PhaseFault {
                     100.0 * stated,
                     100.0 * found
                 )?;
-                let doubt = "; start and sign of the phase, and so the distance, cannot be told from these frames";
+                let doubt =
+                    "; start and sign of the phase, and so the distance, cannot be told from these frames";
                 f.write_str(if sign_known { "" } else { doubt })
             }
             PhaseEvidence::Law { stated, found } => {

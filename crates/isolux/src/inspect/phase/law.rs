@@ -58,9 +58,7 @@ impl Laws {
 
     /// The one way that fits, where exactly one does.
     pub(super) fn only(&self) -> Option<Law> {
-        let fits = |law: &&Law| {
-            law.told && FITTING.contains(&law.exponent) && law.misfit < FITTING_MISFIT
-        };
+        let fits = |law: &&Law| law.told && FITTING.contains(&law.exponent) && law.misfit < FITTING_MISFIT;
         let mut fitting = self.0.iter().filter(fits);
         let (first, second) = (fitting.next()?, fitting.next());
         second.is_none().then_some(*first)

@@ -81,7 +81,11 @@ fn fault(scene: Scene, truth: PhaseConvention, recorded: bool) -> Option<PhaseFa
 
 /// All conventions that differ, that of the paper first.
 fn conventions() -> Vec<PhaseConvention> {
-    Pairs::ALL.into_iter().flat_map(Turn::all).map(|turn| turn.convention(PhaseConvention::default())).collect()
+    Pairs::ALL
+        .into_iter()
+        .flat_map(Turn::all)
+        .map(|turn| turn.convention(PhaseConvention::default()))
+        .collect()
 }
 
 #[test]
@@ -126,7 +130,9 @@ fn a_sign_is_told_with_both_exponents() {
     // By hand: with φ from 0.38 to 2.4 rad, 2 ln(d/d') spreads over 4.2 to 31 of them; the wall falls with d⁻².
     assert!((4.2..31.0).contains(&stated) && (fitting + 2.0).abs() < 0.2, "{stated} {fitting}");
     let text = found.to_string();
-    assert!(text.contains("the amplitude grows with d^7.") && text.contains("with the sign reversed, it falls"));
+    assert!(
+        text.contains("the amplitude grows with d^7.") && text.contains("with the sign reversed, it falls")
+    );
 }
 
 #[test]

@@ -65,11 +65,7 @@ impl Turn {
         let order = order.map(|bin| positions[bin]);
         // Each way has two names. The one with the order that the recording has already is easier to believe.
         let backwards = PhaseConvention { order: [order[0], order[3], order[2], order[1]], reversed: true };
-        if backwards.order == stated.order {
-            backwards
-        } else {
-            PhaseConvention { order, reversed: false }
-        }
+        if backwards.order == stated.order { backwards } else { PhaseConvention { order, reversed: false } }
     }
 }
 
