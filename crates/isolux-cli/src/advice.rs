@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use isolux::{Advice, RecordingField, RecordingKind};
+use isolux::{Advice, PhaseConvention, RecordingField, RecordingKind};
 
 /// A finding, with what can be done about it.
 pub(crate) fn with(finding: impl Display, advice: Option<Advice>) -> String {
@@ -79,6 +79,12 @@ fn field(field: &RecordingField) -> String {
         }
         RecordingField::Intrinsics => {
             return "scale \"intrinsics\" in its recording.json to the size of the frames".to_owned();
+        }
+        RecordingField::SaturatedPhaseSample { value_dn } => {
+            format!("\"saturated_phase_sample\": {value_dn}")
+        }
+        RecordingField::PhaseConvention(PhaseConvention { order, reversed }) => {
+            format!("\"phase_convention\": {{\"order\": {order:?}, \"reversed\": {reversed}}}")
         }
         _ => return String::new(),
     };

@@ -63,7 +63,7 @@ fn damaged_arrays() {
     unreadable_amplitude(&[&whole[..], b"x"].concat(), &["bytes, expected", "(4, 5, 6) of float32"]);
     unreadable_amplitude(b"PK\x03\x04", &["other bytes than NumPy's signature"]);
     unreadable_amplitude(&header("|O", false, &[4, 5, 6]), &["Python objects", ".astype(...)"]);
-    unreadable_amplitude(&header("<c8", false, &[4, 5, 6]), &["complex"]);
+    unreadable_amplitude(&header("<c32", false, &[4, 5, 6]), &["complex"]);
     unreadable_amplitude(&header("<f4", false, &[0, 5, 6]), &["(0, 5, 6)", "at least one frame"]);
     unreadable_amplitude(&Array::filled("<f4", &[5, 6], 1.0).bytes(), &["(5, 6)", "numpy.newaxis"]);
 }

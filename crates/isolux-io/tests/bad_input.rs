@@ -72,7 +72,7 @@ fn claims_that_the_file_does_not_hold() {
 #[test]
 fn arrays_that_are_no_real_numbers() {
     for (descr, kind) in
-        [("|O", "Python objects"), ("<c8", "complex"), ("<U5", "strings"), ("<M8[us]", "dates")]
+        [("|O", "Python objects"), ("<c32", "complex"), ("<U5", "strings"), ("<M8[us]", "dates")]
     {
         let bytes = header(descr, false, &[2, 3, 4]);
         expect(&with_amplitude_bytes(&bytes), &["amplitude.npy", kind, descr, ".astype(...)"]);

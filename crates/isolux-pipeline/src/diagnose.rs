@@ -1,14 +1,15 @@
 //! Diagnoses a recording: whether its amplitudes are already corrected, and what the vendor's scaling does.
 
 use isolux::Channels;
-use isolux::diagnose::{DiagnoseSettings, Diagnoser, Diagnosis};
+use isolux::diagnose::{DiagnoseSettings, Diagnoser, Diagnosis, Finding};
 
 use crate::error::PipelineError;
 use crate::frames;
+use crate::inspect::inspect;
 use crate::observer::{Observer, Work};
 use crate::source::FrameSource;
 
-/// Looks at every frame of a recording.
+/// Looks at every frame of a recording. What contradicts its description comes first among the findings.
 ///
 /// # Errors
 /// [`PipelineError::Frame`] for frames whose planes do not fit together, and those of reading.
@@ -26,10 +27,13 @@ pub fn diagnose(source: &mut dyn FrameSource, observer: &dyn Observer) -> Result
         | Channels::VENDOR_AMPLITUDE;
     // An amplitude that was computed from the bins adds nothing to them.
     wanted.set(Channels::PHASE_SAMPLES, !computed);
+    let suspicions = inspect(source, observer)?;
     let mut diagnoser = Diagnoser::new(facts.shape, settings);
     frames::for_each(source, wanted, Work::Diagnosing, observer, |index, frame| {
         let pushed = diagnoser.push(frame);
         pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
     })?;
-    Ok(diagnoser.finish())
+    let mut diagnosis = diagnoser.finish();
+    diagnosis.findings.splice(0..0, suspicions.into_iter().map(Finding::Suspicion));
+    Ok(diagnosis)
 }

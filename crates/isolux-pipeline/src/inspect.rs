@@ -2,7 +2,7 @@
 
 use isolux::inspect::{Claims, Inspector, Suspicion};
 use isolux::{Channels, Frame, Plane, ShapeError};
-use isolux_io::recording::{ChannelInfo, DistanceUnit};
+use isolux_io::recording::{ChannelInfo, DistanceUnit, ModulationFrequency};
 
 use crate::error::PipelineError;
 use crate::observer::Observer;
@@ -37,7 +37,11 @@ pub fn inspect(
     let stored = source.stored_channels();
     let mut inspector = Inspector::new(facts.shape, claims(&facts, &stored));
     let (mut frame, mut distances) = (Frame::new(facts.shape), Plane::filled(facts.shape, f32::NAN));
-    let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME | Channels::TARGET;
+    let wanted = Channels::AMPLITUDE
+        | Channels::DISTANCE
+        | Channels::INTEGRATION_TIME
+        | Channels::TARGET
+        | Channels::PHASE_SAMPLES;
     for index in frames {
         if observer.cancelled() {
             return Err(PipelineError::Interrupted);
@@ -74,11 +78,19 @@ fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
     let distance = stored.iter().find(|channel| channel.name == DISTANCE);
     let usual = distance.map(|channel| DistanceUnit::usual(channel.element));
     let info = &facts.info;
+    let frequency = info.modulation_frequency_hz;
+    // Frames carry the bins of a single frequency, or those of the finer one of two, or I and Q, which are no bins.
+    let iq = has("phase_samples") && !facts.available.contains(Channels::PHASE_SAMPLES);
+    let unwrapped = iq || matches!(frequency, Some(ModulationFrequency::Pair(_)));
     Claims {
-        modulation_frequency_hz: info.modulation_frequency_hz,
+        modulation_frequency_hz: frequency.map(|frequency| frequency.hz()),
+        range_m: frequency.map(|frequency| frequency.unambiguous_range_m()),
         distance_unit_stated: info.distance_unit.is_some(),
         metres_per_unit: usual.map(|usual| info.distance_unit.unwrap_or(usual).metres()),
         amplitude_from_phase_samples: facts.amplitude_from_phase_samples,
+        phase_convention: info.phase_convention.unwrap_or_default(),
+        distance_from_phases: has("phase_samples") && !has(DISTANCE),
+        unwrapped_range_m: frequency.filter(|_| unwrapped).map(|frequency| frequency.unambiguous_range_m()),
         principal_point: facts.intrinsics().map(|pinhole| [pinhole.cx, pinhole.cy]),
         // With its input, the amplitude is that of the input.
         standardized: info.other.contains_key(PROVENANCE) && !has(VALUES),

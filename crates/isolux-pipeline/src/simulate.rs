@@ -109,7 +109,7 @@ fn info(simulation: &Simulation, extras: Extras) -> RecordingInfo {
     let model = simulation.model();
     let mut info = RecordingInfo {
         camera: Some(format!("{} (simulated)", model.name)),
-        modulation_frequency_hz: Some(model.modulation_frequency_hz),
+        modulation_frequency_hz: Some(model.modulation_frequency_hz.into()),
         saturated_amplitude: model.saturated_amplitude,
         saturated_phase_sample: extras.phase_samples.then(|| model.clip_dn() as f32),
         intrinsics: Some(model.intrinsics.into()),

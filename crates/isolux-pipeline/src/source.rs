@@ -51,7 +51,7 @@ impl SourceFacts {
         RecordingTraits {
             shape: Some(self.shape),
             intrinsics: self.intrinsics(),
-            modulation_frequency_hz: self.info.modulation_frequency_hz,
+            modulation_frequency_hz: self.info.modulation_frequency_hz.map(|frequency| frequency.hz()),
             camera: self.info.camera.clone(),
             ..self.available.into()
         }

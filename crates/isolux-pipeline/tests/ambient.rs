@@ -55,7 +55,7 @@ fn desk(model: &CameraModel, ambient: f64) -> Vec<Frame> {
 
 fn facts(model: &CameraModel, frames: &[Frame]) -> SourceFacts {
     let mut facts = SourceFacts::new("frames", frames[0].shape(), CHANNELS);
-    facts.info.modulation_frequency_hz = Some(model.modulation_frequency_hz);
+    facts.info.modulation_frequency_hz = Some(model.modulation_frequency_hz.into());
     facts
 }
 

@@ -211,7 +211,7 @@ fn wrapped_distances_are_refused_with_the_range() {
     let mut take = board().take.clone().spoilt(|_, frame| {
         frame.distance_m.as_mut().unwrap().values_mut().iter_mut().for_each(|distance| *distance %= 1.8737);
     });
-    take.facts.info.modulation_frequency_hz = Some(80e6);
+    take.facts.info.modulation_frequency_hz = Some(80e6.into());
     assert_refused(fit_sweeps(None, Some(&take)), |warning| {
         matches!(fault(warning), Some(SweepFault::Wrapped { range_m: Some(range_m), .. })
             if (range_m - 1.8737).abs() < 1e-3)

@@ -1,6 +1,7 @@
 //! What a user can do about an error or a warning, as data. Each interface puts it into its own words: the command
 //! line names options, Python names arguments.
 
+use crate::frame::PhaseConvention;
 use crate::step_names::{DistanceStep, TimeStep};
 
 /// The kinds of recordings that a calibration is fitted from.
@@ -44,6 +45,13 @@ pub enum RecordingField {
     ModulationFrequency,
     /// The intrinsics, of the resolution of the frames.
     Intrinsics,
+    /// The value at which phase samples clip.
+    SaturatedPhaseSample {
+        /// The value, DN.
+        value_dn: f32,
+    },
+    /// Order and sign of the phase samples.
+    PhaseConvention(PhaseConvention),
 }
 
 /// One thing to do.

@@ -6,6 +6,7 @@ use isolux::diagnose::{
 use isolux_pipeline::diagnose;
 use serde_json::json;
 
+use crate::advice;
 use crate::failure::Outcome;
 use crate::options::DiagnoseArgs;
 use crate::terminal::{self, Terminal, table};
@@ -33,7 +34,8 @@ pub(crate) fn run(args: &DiagnoseArgs) -> Outcome {
 /// Words first, then the figures, then what cannot be told.
 fn describe(diagnosis: &Diagnosis) -> String {
     let mut parts = vec![format!("verdict: {}", diagnosis.headline())];
-    parts.extend(diagnosis.findings.iter().map(|finding| wrapped(&finding.to_string(), "  ")));
+    let told = |finding: &Finding| wrapped(&advice::with(finding, finding.advice()), "  ");
+    parts.extend(diagnosis.findings.iter().map(told));
     parts.push(String::new());
     parts.push(effects(diagnosis));
     parts.extend(by_amplitude(diagnosis));

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use isolux::{Channels, Shape};
 
+use super::element::ElementType;
 use crate::error::{RecordingError, dims_text, listing};
 
 /// The largest cameras have a few million pixels: a claim of more than this is damage, or an attack on memory.
@@ -16,6 +17,8 @@ pub(crate) enum FrameDims {
     Image,
     NumberOrImage,
     Bins,
+    /// Complex phase samples.
+    Iq,
     Pose,
     /// A channel without a meaning to isolux, which is carried along.
     Anything,
@@ -73,9 +76,23 @@ pub(crate) fn frame_values(path: &Path, dims: &[usize]) -> Result<usize, Recordi
 }
 
 impl FrameDims {
-    /// Those that the channel of this name must have.
-    pub(crate) fn of(name: &str) -> Self {
-        KNOWN.iter().find(|row| row.0 == name).map_or(Self::Anything, |row| row.1)
+    /// Those that the channel of this name and type must have.
+    pub(crate) fn of(name: &str, element: ElementType) -> Self {
+        match KNOWN.iter().find(|row| row.0 == name).map_or(Self::Anything, |row| row.1) {
+            Self::Bins if element.is_complex() => Self::Iq,
+            dims => dims,
+        }
+    }
+
+    /// How a frame is written where the shape is not known, and with `lead` before it.
+    pub(crate) fn written(self, lead: &str) -> String {
+        match self {
+            Self::Bins => {
+                format!("({lead}4, H, W), ({lead}8, H, W) of two frequencies, or ({lead}2, H, W) of I and Q")
+            }
+            Self::Iq => format!("({lead}H, W) of complex numbers, or ({lead}2, H, W) of two frequencies"),
+            _ => format!("({lead}H, W)"),
+        }
     }
 
     /// The dimensions that fit a recording of this shape; none are listed where anything fits.
@@ -85,7 +102,8 @@ impl FrameDims {
             Self::Number => vec![vec![]],
             Self::Image => vec![vec![height, width]],
             Self::NumberOrImage => vec![vec![], vec![height, width]],
-            Self::Bins => vec![vec![4, height, width]],
+            Self::Bins => [4, 8, 2].map(|samples| vec![samples, height, width]).to_vec(),
+            Self::Iq => vec![vec![height, width], vec![2, height, width]],
             Self::Pose => vec![vec![4, 4]],
             Self::Anything => vec![],
         }
@@ -99,12 +117,12 @@ impl FrameDims {
         }
     }
 
-    /// The shape of a frame of these dimensions; `None` for what is neither an image nor four bins.
+    /// The shape of a frame of these dimensions; `None` for what is neither an image nor phase samples.
     pub(crate) fn shape(self, dims: &[usize]) -> Option<Shape> {
         match (self, dims) {
-            (Self::Bins, &[4, height, width]) | (Self::Image, &[height, width]) => {
-                Some(Shape::new(height, width))
-            }
+            (Self::Bins, &[2 | 4 | 8, height, width])
+            | (Self::Iq, &[2, height, width])
+            | (Self::Image | Self::Iq, &[height, width]) => Some(Shape::new(height, width)),
             _ => None,
         }
     }

@@ -31,6 +31,10 @@ pub enum ElementType {
     F32,
     /// IEEE double precision.
     F64,
+    /// Complex, two of single precision.
+    C64,
+    /// Complex, two of double precision.
+    C128,
 }
 
 /// Byte order of stored values.
@@ -47,7 +51,7 @@ impl ByteOrder {
     pub const NATIVE: Self = if cfg!(target_endian = "big") { Self::Big } else { Self::Little };
 }
 
-const TYPES: [(ElementType, &str, usize); 12] = [
+const TYPES: [(ElementType, &str, usize); 14] = [
     (ElementType::Bool, "bool", 1),
     (ElementType::U8, "uint8", 1),
     (ElementType::U16, "uint16", 2),
@@ -60,6 +64,8 @@ const TYPES: [(ElementType, &str, usize); 12] = [
     (ElementType::F16, "float16", 2),
     (ElementType::F32, "float32", 4),
     (ElementType::F64, "float64", 8),
+    (ElementType::C64, "complex64", 8),
+    (ElementType::C128, "complex128", 16),
 ];
 
 impl ElementType {
@@ -83,7 +89,13 @@ impl ElementType {
     /// True for the types that count: integers and booleans.
     #[must_use]
     pub const fn is_integer(self) -> bool {
-        !matches!(self, Self::F16 | Self::F32 | Self::F64)
+        !matches!(self, Self::F16 | Self::F32 | Self::F64 | Self::C64 | Self::C128)
+    }
+
+    /// True for complex numbers: real and imaginary part stand one behind the other.
+    #[must_use]
+    pub const fn is_complex(self) -> bool {
+        matches!(self, Self::C64 | Self::C128)
     }
 }
 
@@ -176,12 +188,19 @@ macro_rules! decode_as {
                 ElementType::F16 => u16::decode(bytes, order, out, $half),
                 ElementType::F32 => f32::decode(bytes, order, out, |v| v as $out),
                 ElementType::F64 => f64::decode(bytes, order, out, |v| v as $out),
+                ElementType::C64 => f32::decode(bytes, order, out, |v| v as $out),
+                ElementType::C128 => f64::decode(bytes, order, out, |v| v as $out),
             }
         }
     };
 }
 
-decode_as!(decode_f32, f32, f32_from_half, "Values of any type as f32: integers beyond 2²⁴ are rounded.");
+decode_as!(
+    decode_f32,
+    f32,
+    f32_from_half,
+    "Values of any type as f32: integers beyond 2²⁴ are rounded, a complex number counts as two values, real part first."
+);
 decode_as!(decode_f64, f64, |v| f64::from(f32_from_half(v)), "Values of any type as f64.");
 
 /// The value that the bits of an IEEE half-precision number stand for: exact, every half is an f32.
@@ -206,7 +225,8 @@ pub(crate) fn append_as_little_endian(
     let start = out.len();
     out.extend_from_slice(bytes);
     if order == ByteOrder::Big {
-        out[start..].chunks_exact_mut(element.size_bytes()).for_each(<[u8]>::reverse);
+        let parts = if element.is_complex() { 2 } else { 1 };
+        out[start..].chunks_exact_mut(element.size_bytes() / parts).for_each(<[u8]>::reverse);
     }
 }
 
@@ -228,6 +248,16 @@ mod tests {
         assert_eq!(out, [-2.0, 256.0]);
         decode_f64(ElementType::I16, ByteOrder::Little, &[0xff, 0xfe, 0x01, 0x00], &mut out);
         assert_eq!(out, [-257.0, 1.0]);
+        decode_f64(ElementType::C64, ByteOrder::Big, &[0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0], &mut out);
+        assert_eq!(out, [1.0, -2.0]);
+        let mut little = Vec::new();
+        append_as_little_endian(
+            ElementType::C64,
+            ByteOrder::Big,
+            &[0x3f, 0x80, 0, 0, 0xc0, 0, 0, 0],
+            &mut little,
+        );
+        assert_eq!(little, [0, 0, 0x80, 0x3f, 0, 0, 0, 0xc0]);
         decode_f64(ElementType::Bool, ByteOrder::Little, &[7, 0], &mut out);
         assert_eq!(out, [1.0, 0.0]);
     }

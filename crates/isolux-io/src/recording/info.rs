@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 
 use super::codes::Codes;
 use super::distance_unit::DistanceUnit;
+use super::frequency::ModulationFrequency;
 use crate::error::RecordingError;
 
 /// More than any description of a recording takes; a larger file is something else.
@@ -54,9 +55,9 @@ pub struct RecordingInfo {
     /// Name of the camera.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<String>,
-    /// Modulation frequency in Hz.
+    /// Modulation frequency in Hz, or two.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub modulation_frequency_hz: Option<f64>,
+    pub modulation_frequency_hz: Option<ModulationFrequency>,
     /// What the distance channel measures; radial where it is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance_kind: Option<DistanceKind>,
@@ -124,7 +125,7 @@ impl RecordingInfo {
         let mut reader = Fields { path, fields: &mut fields };
         let info = Self {
             camera: reader.take("camera", "a string")?,
-            modulation_frequency_hz: reader.take_positive("modulation_frequency_hz")?,
+            modulation_frequency_hz: reader.take_frequency()?,
             distance_kind: reader.take("distance_kind", "\"radial\" or \"z\"")?,
             distance_unit: reader.take("distance_unit", DistanceUnit::EXPECTED)?,
             integration_time_us: reader.take_positive("integration_time_us")?,
@@ -183,6 +184,21 @@ impl Fields<'_> {
                 Err(self.error(field, &value.into(), expected))
             }
             _ => Ok(value),
+        }
+    }
+
+    fn take_frequency(&mut self) -> Result<Option<ModulationFrequency>, RecordingError> {
+        let (field, expected) = (
+            "modulation_frequency_hz",
+            "a positive number, or two unlike ones, [first, second], whose common divisor is at least 1/64 of them",
+        );
+        let frequency: Option<ModulationFrequency> = self.take(field, expected)?;
+        match frequency {
+            Some(frequency) if !frequency.is_usable() => {
+                let found = serde_json::to_value(frequency).unwrap_or_default();
+                Err(self.error(field, &found, expected))
+            }
+            _ => Ok(frequency),
         }
     }
 

@@ -5,8 +5,9 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `element`, `codes`, `distance_unit` | number types; values that are no measurements; metres per unit |
+//! | `frequency` | one modulation frequency or two |
 //! | `info`, `metadata` | `recording.json`; what is known of a recording |
-//! | `channels` | the channels with a meaning: name, dimensions, flag |
+//! | `phase_layout`, `channels` | the forms of phase samples; the channels with a meaning: name, dimensions, flag |
 //! | `source` | [`ChannelSource`]: what a format has to deliver |
 //! | `reading` | [`Recording`]: what readers see |
 //! | `assemble` | [`Assembled`]: from the one to the other; units, radial distances, flags, checks |
@@ -23,11 +24,13 @@ mod channels;
 mod codes;
 mod distance_unit;
 mod element;
+mod frequency;
 mod info;
 mod metadata;
 mod native;
 mod npy;
 mod open;
+mod phase_layout;
 mod reading;
 mod source;
 mod writer;
@@ -36,6 +39,7 @@ pub use assemble::Assembled;
 pub use codes::{ChannelCodes, Code, Codes, CodesFrom, OneOrMore};
 pub use distance_unit::DistanceUnit;
 pub use element::{ByteOrder, Element, ElementType, Number};
+pub use frequency::ModulationFrequency;
 pub use info::{DistanceKind, RecordedIntrinsics, RecordingInfo};
 pub use metadata::{Access, ChannelInfo, Metadata, Storage};
 pub use open::open;

@@ -190,7 +190,7 @@ fn fit_error(distance_sweeps: &[String]) -> impl Fn(CalibrateError) -> PipelineE
 
 /// The modulation frequency of all these recordings; `None` where they differ or one does not state it.
 fn modulation_frequency_hz(sources: &Frames<'_>, observer: &dyn Observer) -> Option<f64> {
-    let named = sources.iter().map(|source| source.facts().info.modulation_frequency_hz);
+    let named = sources.iter().map(|source| source.facts().traits().modulation_frequency_hz);
     let mut frequencies: Vec<Option<f64>> = named.collect();
     frequencies.dedup();
     if frequencies.len() > 1 {

@@ -6,6 +6,8 @@ use serde::Serialize;
 
 use super::effect::{Evidence, State};
 use super::vendor::VendorFinding;
+use crate::advice::Advice;
+use crate::inspect::Suspicion;
 
 /// One statement about the recording; [`Display`](fmt::Display) gives a sentence.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,6 +103,8 @@ pub enum Finding {
         /// How many.
         levels: usize,
     },
+    /// Something about the recording is probably not as it says.
+    Suspicion(Suspicion),
 }
 
 /// The findings in a few words.
@@ -131,7 +135,23 @@ pub(super) fn headline(findings: &[Finding]) -> String {
 impl Finding {
     /// True for a finding about whether the amplitude is raw or corrected.
     fn is_about_corrections(&self) -> bool {
-        !matches!(self, Self::Clipped { .. } | Self::Saturated { .. } | Self::Coarse { .. } | Self::Vendor(_))
+        !matches!(
+            self,
+            Self::Clipped { .. }
+                | Self::Saturated { .. }
+                | Self::Coarse { .. }
+                | Self::Vendor(_)
+                | Self::Suspicion(_)
+        )
+    }
+
+    /// What can be done about it.
+    #[must_use]
+    pub fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Suspicion(suspicion) => suspicion.advice(),
+            _ => None,
+        }
     }
 
     /// A few words for the headline; `None` for findings that it states otherwise.
@@ -159,6 +179,7 @@ impl Finding {
             Self::Clipped { value_dn, .. } => format!("clipped at {value_dn}"),
             Self::Saturated { fraction } => format!("{:.1} % saturated", 100.0 * fraction),
             Self::Coarse { levels } => format!("only {levels} levels"),
+            Self::Suspicion(suspicion) => suspicion.short().to_owned(),
         })
     }
 }
@@ -214,6 +235,7 @@ impl fmt::Display for Finding {
                 )
             }
             Self::Vendor(vendor) => vendor.fmt(f),
+            Self::Suspicion(suspicion) => suspicion.fmt(f),
             Self::DistanceOdd { exponent } => write!(
                 f,
                 "The amplitude goes with d^{exponent:.2}, which is neither raw (-2) nor corrected (0): corrected too far, a \

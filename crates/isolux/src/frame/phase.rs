@@ -34,6 +34,14 @@ impl PhaseConvention {
     pub fn is_permutation(&self) -> bool {
         (0..4).all(|bin| self.order.contains(&bin))
     }
+
+    /// Positions, in the recording, of bins that are the paper's A1..A4 in order and sign.
+    #[must_use]
+    pub fn positions(&self) -> [usize; 4] {
+        let [a1, a2, a3, a4] = self.order;
+        // The phase that runs the other way changes the sign of A2 − A4 and of nothing else.
+        if self.reversed { [a1, a4, a3, a2] } else { self.order }
+    }
 }
 
 /// Amplitude in the unit of the bins, eq. 1 of Stürmer, Penne and Hornegger (2008):

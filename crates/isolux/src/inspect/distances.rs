@@ -2,7 +2,6 @@
 
 use super::claims::Claims;
 use super::suspicion::Suspicion;
-use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 use crate::numerics::statistics::quantile;
 
 /// Half of the image is nearer than this, m, even for lidars that see far: the road is near.
@@ -26,7 +25,7 @@ const LEAST_BEYOND: f64 = 2e-3;
 pub(super) fn suspicion(distances_m: &[f32], claims: &Claims) -> Option<Suspicion> {
     let mut values: Vec<f64> = distances_m.iter().map(|&d| f64::from(d)).collect();
     let median_m = quantile(&mut values, 0.5)?;
-    let range_m = claims.modulation_frequency_hz.map(|f| SPEED_OF_LIGHT_M_PER_S / (2.0 * f));
+    let range_m = claims.range_m;
     let stated = claims.distance_unit_stated;
     let far_m = if stated { FAR_AS_STATED_M } else { range_m.map_or(FAR_M, |range_m| range_m.min(FAR_M)) };
     let near_m = if stated { NEAR_AS_STATED_M } else { NEAR_M };
@@ -57,12 +56,13 @@ fn likely_unit(median_m: f64, range_m: Option<f64>, claims: &Claims) -> Option<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::phase::SPEED_OF_LIGHT_M_PER_S;
 
     fn claims(metres_per_unit: f64, stated: bool, frequency_hz: Option<f64>) -> Claims {
         Claims {
             metres_per_unit: Some(metres_per_unit),
             distance_unit_stated: stated,
-            modulation_frequency_hz: frequency_hz,
+            range_m: frequency_hz.map(|f| SPEED_OF_LIGHT_M_PER_S / (2.0 * f)),
             ..Claims::default()
         }
     }

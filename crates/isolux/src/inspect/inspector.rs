@@ -4,9 +4,10 @@ use super::claims::Claims;
 use super::dark::Dark;
 use super::exponents::Exponents;
 use super::extreme::{Extreme, Kind, largest, smallest};
+use super::phase;
 use super::suspicion::Suspicion;
 use super::times::Times;
-use super::{distances, lens};
+use super::{clip, distances, lens};
 use crate::frame::{Frame, PixelFlags, Plane, Shape, ShapeError};
 
 /// Sampled pixels of a frame, at most: more would take time without telling more.
@@ -27,6 +28,7 @@ pub struct Inspector {
     times: Times,
     dark: Dark,
     exponents: Exponents,
+    phases: phase::Sample,
 }
 
 impl Inspector {
@@ -42,6 +44,7 @@ impl Inspector {
             times: Times::default(),
             dark: Dark::default(),
             exponents: Exponents::default(),
+            phases: phase::Sample::default(),
         }
     }
 
@@ -65,6 +68,7 @@ impl Inspector {
         self.times.push(frame, stride);
         self.dark.push(frame, stride);
         self.exponents.push(frame, stride);
+        self.phases.push(frame, &self.claims);
         Ok(())
     }
 
@@ -100,10 +104,18 @@ impl Inspector {
         found.extend(self.times.suspicion());
         found.extend(largest(&self.amplitudes).map(of_amplitudes));
         found.extend(codes.map(of_distances));
+        found.extend(self.phases.fault(&self.claims).map(Suspicion::PhaseConvention));
+        found.extend(self.clipped_bins());
         found.extend(self.exponents.suspicions());
         found.extend(lens::suspicion(self.claims.principal_point, self.shape));
         found.extend(self.dark.suspicion());
         found
+    }
+
+    /// Phase samples that clip. Those at a stated value are flagged, and not among these.
+    fn clipped_bins(&self) -> Option<Suspicion> {
+        let clip::Clip { value_dn, share, both_signs } = clip::clip(self.phases.bins())?;
+        Some(Suspicion::PhaseSamplesClip { value_dn, share, both_signs })
     }
 }
 

@@ -25,15 +25,18 @@
 //! ```
 
 mod claims;
+mod clip;
 mod dark;
 mod distances;
 mod exponents;
 mod extreme;
 mod inspector;
 mod lens;
+mod phase;
 mod suspicion;
 mod times;
 
 pub use claims::Claims;
 pub use inspector::Inspector;
+pub use phase::{PhaseEvidence, PhaseFault};
 pub use suspicion::Suspicion;

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::phase::PhaseFault;
 use crate::advice::{Advice, RecordingField};
 use crate::standardize::AlreadyCorrected;
 
@@ -98,6 +99,17 @@ pub enum Suspicion {
         /// The signal-to-noise ratio that they do not reach.
         signal_to_noise: f64,
     },
+    /// Phase samples that are read in the wrong order or with the wrong sign.
+    PhaseConvention(PhaseFault),
+    /// Many phase samples share the largest value: they clip at a value that the recording does not name.
+    PhaseSamplesClip {
+        /// The value, DN.
+        value_dn: f32,
+        /// Share of the phase samples that have it, or its negative, 0..=1.
+        share: f64,
+        /// True where they clip at the negative value too.
+        both_signs: bool,
+    },
 }
 
 impl Suspicion {
@@ -109,6 +121,26 @@ impl Suspicion {
         AlreadyCorrected {
             time: standardized || any(|found| matches!(found, Self::TimeCorrected { .. })),
             distance: standardized || any(|found| matches!(found, Self::DistanceCorrected { .. })),
+        }
+    }
+
+    /// A few words for a headline.
+    #[must_use]
+    pub fn short(&self) -> &'static str {
+        match self {
+            Self::AmplitudeCode { .. } | Self::DistanceCode { .. } => "a code that is not named",
+            Self::AmplitudeClips { .. } => "amplitudes that clip",
+            Self::PhaseConvention(_) => "phases in another order or sign",
+            Self::PhaseSamplesClip { .. } => "phase samples that clip",
+            Self::DistanceUnit { .. } => "distances in another unit",
+            Self::BeyondRange { .. } => "distances beyond the range",
+            Self::TimeUnit { .. } => "integration times in another unit",
+            Self::TimeCorrected { .. } => "corrected for the integration time",
+            Self::TimePartly { .. } => "a gamma curve or a partial correction",
+            Self::DistanceCorrected { .. } => "corrected for the distance",
+            Self::PrincipalPoint { .. } => "intrinsics of another resolution",
+            Self::Standardized => "standardized already",
+            Self::TooDark { .. } => "nothing but noise",
         }
     }
 
@@ -126,6 +158,10 @@ impl Suspicion {
                 RecordingField::TimesInMicroseconds { factor: *us_per_unit }
             }
             Self::PrincipalPoint { .. } => RecordingField::Intrinsics,
+            Self::PhaseConvention(fault) => RecordingField::PhaseConvention(fault.fitting),
+            Self::PhaseSamplesClip { value_dn, .. } => {
+                RecordingField::SaturatedPhaseSample { value_dn: *value_dn }
+            }
             Self::TimeCorrected { .. } | Self::TimePartly { .. } | Self::DistanceCorrected { .. } => {
                 return Some(Advice::Diagnose);
             }
@@ -198,6 +234,14 @@ impl fmt::Display for Suspicion {
                 f,
                 "the amplitudes are little more than noise: nine tenths of the image have a signal-to-noise ratio below \
                  {signal_to_noise:.1} (of noise alone: 2.8)"
+            ),
+            Self::PhaseConvention(fault) => fault.fmt(f),
+            Self::PhaseSamplesClip { value_dn, share, both_signs } => write!(
+                f,
+                "{:.2} % of the phase samples are exactly {}{value_dn}, and hardly any are near it: they clip there, and \
+                 the amplitudes of these pixels are wrong",
+                100.0 * share,
+                if *both_signs { "±" } else { "" }
             ),
         }
     }

@@ -136,12 +136,12 @@ impl<S: ChannelSource> Recording for Assembled<S> {
         plane: &mut Plane<f32>,
     ) -> Result<(), RecordingError> {
         let (shape, info) = (self.metadata.shape, self.metadata.require_channel(channel)?);
-        if info.frame_dims != [shape.height, shape.width] {
+        if info.frame_dims != [shape.height, shape.width] || info.element.is_complex() {
             let stored = self.channels.iter().find(|stored| stored.name == channel);
             return Err(RecordingError::ChannelShape {
                 file: stored.map_or_else(|| self.metadata.path.join(channel), |stored| stored.path.clone()),
                 found: dims_text(&info.frame_dims),
-                expected: format!("an image of {shape}"),
+                expected: format!("an image of {shape}, real numbers"),
                 advice: String::new(),
             });
         }

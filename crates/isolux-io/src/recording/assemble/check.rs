@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use isolux::{Channels, Shape};
+use isolux::{Channels, PhaseConvention, Shape};
 
 use crate::error::{RecordingError, dims_text};
 use crate::recording::channels::{self, FrameDims, Places};
 use crate::recording::element::ElementType;
+use crate::recording::frequency::ModulationFrequency;
 use crate::recording::info::{DistanceKind, RecordingInfo};
 use crate::recording::metadata::{ChannelInfo, Metadata, Storage};
+use crate::recording::phase_layout::PhaseLayout;
 use crate::recording::source::{SourceDescription, StoredChannel};
 
 /// What reading needs to know of a recording.
@@ -32,7 +34,14 @@ pub(super) fn check(description: &SourceDescription) -> Result<Layout, Recording
         stored |= channels::flag(&channel.name);
     }
     check_info(&description.info, &description.info_path, stored)?;
-    let available = available(stored, &description.info);
+    let phases = description.channels.iter().find(|channel| channel.name == "phase_samples");
+    let layout = phases.and_then(|channel| PhaseLayout::of(channel.element, &channel.frame_dims));
+    if let Some(layout) = layout {
+        check_phases(&description.info, &description.info_path, layout)?;
+    }
+    let mut available = available(stored, &description.info);
+    // Frames carry raw bins or none.
+    available.set(Channels::PHASE_SAMPLES, layout.is_some_and(|layout| !layout.is_iq()));
     let metadata = Metadata {
         path: description.path.clone(),
         frame_count: description.frame_count,
@@ -48,13 +57,12 @@ pub(super) fn check(description: &SourceDescription) -> Result<Layout, Recording
 /// The shape of the frames, from the most important channel that has one.
 fn shape(description: &SourceDescription, leading: usize) -> Result<Shape, RecordingError> {
     let channel = &description.channels[leading];
-    let kind = FrameDims::of(&channel.name);
+    let kind = FrameDims::of(&channel.name, channel.element);
     let shape = kind.shape(&channel.frame_dims).filter(|shape| shape.height > 0 && shape.width > 0);
     let Some(shape) = shape.filter(|_| description.frame_count != Some(0)) else {
         let frames = description.frame_count.map_or(String::new(), |count| format!("{count} "));
         let found = format!("{frames}frames of {}", dims_text(&channel.frame_dims));
-        let expected = if kind == FrameDims::Bins { "(4, H, W)" } else { "(H, W)" };
-        let expected = format!("{expected} with at least one frame and one pixel");
+        let expected = format!("{} with at least one frame and one pixel", kind.written(""));
         return Err(RecordingError::content(&channel.path, found, expected));
     };
     Ok(shape)
@@ -62,7 +70,15 @@ fn shape(description: &SourceDescription, leading: usize) -> Result<Shape, Recor
 
 fn check_channel(channel: &StoredChannel, shape: Shape) -> Result<(), RecordingError> {
     channels::frame_values(&channel.path, &channel.frame_dims)?;
-    let kind = FrameDims::of(&channel.name);
+    let kind = FrameDims::of(&channel.name, channel.element);
+    if channel.element.is_complex() && !matches!(kind, FrameDims::Iq | FrameDims::Anything) {
+        let found = format!("values of type {}", channel.element);
+        return Err(RecordingError::content(
+            &channel.path,
+            found,
+            "real numbers; only `phase_samples` may be complex",
+        ));
+    }
     if !kind.allows(&channel.frame_dims, shape) {
         let allowed: Vec<_> = kind.allowed(shape).iter().map(|dims| dims_text(dims)).collect();
         let expected = if allowed.is_empty() { "no dimension of 0".to_owned() } else { allowed.join(" or ") };
@@ -94,6 +110,29 @@ fn check_info(info: &RecordingInfo, path: &Path, stored: Channels) -> Result<(),
     if info.integration_time_us.is_some() && stored.contains(Channels::INTEGRATION_TIME) {
         let expected = "either the constant or the channel `integration_time_us`; remove one";
         return error("integration_time_us", "both", expected);
+    }
+    Ok(())
+}
+
+/// Checks what the description says of the phase samples.
+fn check_phases(info: &RecordingInfo, path: &Path, layout: PhaseLayout) -> Result<(), RecordingError> {
+    let error = |field: &str, found: &str, expected: &str| {
+        let (field, found, expected) = (field.to_owned(), found.to_owned(), expected.to_owned());
+        Err(RecordingError::Info { path: path.to_owned(), field, found, expected })
+    };
+    let (field, frequency) = ("modulation_frequency_hz", info.modulation_frequency_hz);
+    let pair = matches!(frequency, Some(ModulationFrequency::Pair(_)));
+    if layout.is_twice() && !pair {
+        let found = if frequency.is_some() { "one frequency" } else { "nothing" };
+        return error(field, found, "[first, second]: `phase_samples` are of two frequencies");
+    }
+    if pair && !layout.is_twice() {
+        return error(field, "two frequencies", "one: `phase_samples` are of a single frequency");
+    }
+    let order = info.phase_convention.unwrap_or_default().order;
+    if layout.is_iq() && order != PhaseConvention::default().order {
+        let expected = "no order, only `reversed`: `phase_samples` are I and Q, not four bins";
+        return error("phase_convention", &format!("the order {order:?}"), expected);
     }
     Ok(())
 }

@@ -1,21 +1,22 @@
 //! From loaded channels to a [`Frame`].
 
-use isolux::{Channels, Frame, PixelFlags, Plane, phase};
+use isolux::{Channels, Frame, PixelFlags, Plane};
 
-use super::bins;
 use super::codes;
 use super::distance::DistanceScale;
 use super::loaded::Loaded;
+use super::phases::Phases;
 use crate::error::RecordingError;
 use crate::recording::channels::Places;
 use crate::recording::info::RecordingInfo;
+use crate::recording::phase_layout::PhaseLayout;
 use crate::recording::source::SourceDescription;
 
 /// What lives from frame to frame.
 #[derive(Debug)]
 pub(super) struct Scratch {
     distance_scale: DistanceScale,
-    bins: Option<[Plane<f32>; 4]>,
+    phases: Option<Phases>,
     numbers: Vec<f32>,
 }
 
@@ -23,7 +24,13 @@ impl Scratch {
     pub(super) fn new(description: &SourceDescription, places: &Places) -> Self {
         let distance = places.get(Channels::DISTANCE).map(|place| description.channels[place].element);
         let distance_scale = DistanceScale::new(&description.info, distance);
-        Self { distance_scale, bins: None, numbers: Vec::new() }
+        let frequency = description.info.modulation_frequency_hz;
+        let layout = places.get(Channels::PHASE_SAMPLES).and_then(|place| {
+            let channel = &description.channels[place];
+            PhaseLayout::of(channel.element, &channel.frame_dims)
+        });
+        let phases = layout.map(|layout| Phases::new(layout, frequency));
+        Self { distance_scale, phases, numbers: Vec::new() }
     }
 }
 
@@ -53,19 +60,22 @@ pub(super) fn fill(
     frame.flags.fill(PixelFlags::empty());
     frame.amplitude.reshape(shape, f32::NAN);
 
-    let has_bins = needed.contains(Channels::PHASE_SAMPLES) && bins::read(loaded, &mut scratch.bins)?;
-    let bins = scratch.bins.as_ref().filter(|_| has_bins);
+    let mut phases = scratch.phases.as_mut().filter(|_| needed.contains(Channels::PHASE_SAMPLES));
+    if let Some(phases) = &mut phases {
+        phases.read(loaded)?;
+    }
     if wanted.contains(Channels::AMPLITUDE) {
-        fill_amplitude(loaded, bins, frame)?;
+        fill_amplitude(loaded, phases.as_deref(), frame)?;
     } else {
         frame.amplitude.fill(f32::NAN);
     }
-    if let (Some(bins), Some(clip)) = (bins, info.saturated_phase_sample) {
-        bins::flag_clipped(bins, clip, &mut frame.flags);
+    if let (Some(phases), Some(clip)) = (&phases, info.saturated_phase_sample) {
+        phases.flag_clipped(clip, &mut frame.flags);
     }
     if wanted.contains(Channels::DISTANCE) {
         let distance_m = frame.distance_m.get_or_insert_with(|| Plane::filled(shape, f32::NAN));
-        fill_distance(loaded, bins, &mut scratch.distance_scale, distance_m, &mut frame.flags)?;
+        let phases = phases.as_deref_mut();
+        fill_distance(loaded, phases, &mut scratch.distance_scale, distance_m, &mut frame.flags)?;
     } else {
         frame.distance_m = None;
     }
@@ -76,24 +86,23 @@ pub(super) fn fill(
     loaded.read_target(wanted, &mut scratch.numbers, &mut frame.target)?;
     frame.timestamp_us = loaded.timestamp_us(wanted)?;
     frame.world_from_camera = loaded.pose(wanted)?;
-    if wanted.contains(Channels::PHASE_SAMPLES) {
+    match phases.filter(|_| wanted.contains(Channels::PHASE_SAMPLES)) {
         // Swapped, not copied: the frame's old planes are the next frame's scratch.
-        std::mem::swap(&mut frame.phase_samples, &mut scratch.bins);
-    } else {
-        frame.phase_samples = None;
+        Some(phases) => std::mem::swap(&mut frame.phase_samples, &mut phases.bins),
+        None => frame.phase_samples = None,
     }
     Ok(())
 }
 
 fn fill_amplitude(
     loaded: &Loaded<'_>,
-    bins: Option<&[Plane<f32>; 4]>,
+    phases: Option<&Phases>,
     frame: &mut Frame,
 ) -> Result<(), RecordingError> {
     if !loaded.plane(Channels::AMPLITUDE, &mut frame.amplitude)?
-        && let Some(bins) = bins
+        && let Some(phases) = phases
     {
-        phase::amplitude_into(bins, &mut frame.amplitude).map_err(|error| unequal(loaded, &error))?;
+        phases.amplitude_into(loaded, &mut frame.amplitude)?;
     }
     frame.flag_amplitude(loaded.metadata.info.saturated_amplitude);
     if let Some(codes) = &loaded.metadata.info.codes {
@@ -104,7 +113,7 @@ fn fill_amplitude(
 
 fn fill_distance(
     loaded: &Loaded<'_>,
-    bins: Option<&[Plane<f32>; 4]>,
+    phases: Option<&mut Phases>,
     scale: &mut DistanceScale,
     distance_m: &mut Plane<f32>,
     flags: &mut Plane<PixelFlags>,
@@ -114,14 +123,8 @@ fn fill_distance(
             codes::distance(&codes.distance, distance_m, flags);
         }
         scale.apply(distance_m);
-    } else if let (Some(bins), Some(frequency_hz)) = (bins, loaded.metadata.info.modulation_frequency_hz) {
-        // The bins are in the paper's sign already.
-        phase::distance_into(bins, frequency_hz, false, distance_m)
-            .map_err(|error| unequal(loaded, &error))?;
+    } else if let Some(phases) = phases {
+        phases.distance_into(loaded, distance_m)?;
     }
     Ok(())
-}
-
-fn unequal(loaded: &Loaded<'_>, error: &isolux::ShapeError) -> RecordingError {
-    RecordingError::content(&loaded.metadata.path, error.to_string(), "bins of one shape")
 }

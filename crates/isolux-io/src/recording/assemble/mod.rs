@@ -2,7 +2,7 @@
 //!
 //! [`Assembled`] checks, when it is opened, that the channels make one recording (`check`), reaches frames in the
 //! order that the source allows (`cursor`), and fills a frame (`fill`) from the loaded channels (`loaded`): phase
-//! samples (`bins`), distances (`distance`), and single values, each checked (`values`).
+//! samples (`phases`: four `bins`, or `iq`; `unwrap` of two frequencies), distances (`distance`), and single values, each checked (`values`).
 
 mod assembled;
 mod bins;
@@ -11,7 +11,10 @@ mod codes;
 mod cursor;
 mod distance;
 mod fill;
+mod iq;
 mod loaded;
+mod phases;
+mod unwrap;
 mod values;
 
 pub use assembled::Assembled;

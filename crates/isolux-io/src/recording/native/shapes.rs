@@ -15,7 +15,11 @@ const ADD_DIMENSION: &str = "add the first dimension: numpy.save(file, array[num
 pub(super) fn check(path: &Path, arrays: &[ArrayFile]) -> Result<usize, RecordingError> {
     let arrays: Vec<_> = arrays
         .iter()
-        .map(|array| ArrayShape { name: &array.name, path: &array.path, dims: &array.header.dims })
+        .map(|array| {
+            let (name, path) = (array.name.as_str(), array.path.as_path());
+            let kind = FrameDims::of(name, array.header.element);
+            ArrayShape { name, path, kind, dims: &array.header.dims }
+        })
         .collect();
     check_shapes(path, &arrays)
 }
@@ -25,6 +29,7 @@ pub(super) fn check(path: &Path, arrays: &[ArrayFile]) -> Result<usize, Recordin
 struct ArrayShape<'a> {
     name: &'a str,
     path: &'a Path,
+    kind: FrameDims,
     dims: &'a [usize],
 }
 
@@ -36,13 +41,13 @@ fn check_shapes(path: &Path, arrays: &[ArrayShape<'_>]) -> Result<usize, Recordi
 }
 
 fn leading_shape(array: &ArrayShape<'_>) -> Result<(usize, Shape), RecordingError> {
-    let kind = FrameDims::of(array.name);
-    let expected = if kind == FrameDims::Bins { "(N, 4, H, W)" } else { "(N, H, W)" };
+    let kind = array.kind;
+    let expected = kind.written("N, ");
     let fits = array.dims.split_first().and_then(|(&frames, dims)| Some((frames, kind.shape(dims)?)));
     let Some((frames, shape)) = fits else {
         let single = kind.shape(array.dims).is_some();
         let advice = if single { format!("; for a single frame, {ADD_DIMENSION}") } else { String::new() };
-        return Err(array.error(expected.to_owned(), advice));
+        return Err(array.error(expected, advice));
     };
     if frames == 0 || shape.height == 0 || shape.width == 0 {
         return Err(array.error(format!("{expected} with at least one frame and one pixel"), String::new()));
@@ -51,7 +56,7 @@ fn leading_shape(array: &ArrayShape<'_>) -> Result<(usize, Shape), RecordingErro
 }
 
 fn check_array(array: &ArrayShape<'_>, frames: usize, shape: Shape) -> Result<(), RecordingError> {
-    let kind = FrameDims::of(array.name);
+    let kind = array.kind;
     if array.dims.split_first().is_some_and(|(&first, dims)| first == frames && kind.allows(dims, shape)) {
         return Ok(());
     }
@@ -80,9 +85,10 @@ impl ArrayShape<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::element::ElementType;
 
     fn array<'a>(name: &'a str, dims: &'a [usize]) -> ArrayShape<'a> {
-        ArrayShape { name, path: Path::new(name), dims }
+        ArrayShape { name, path: Path::new(name), kind: FrameDims::of(name, ElementType::U16), dims }
     }
 
     fn check(arrays: &[ArrayShape<'_>]) -> Result<usize, RecordingError> {

@@ -19,6 +19,8 @@ const fn code(element: ElementType) -> &'static str {
         ElementType::F16 => "f2",
         ElementType::F32 => "f4",
         ElementType::F64 => "f8",
+        ElementType::C64 => "c8",
+        ElementType::C128 => "c16",
     }
 }
 
@@ -39,7 +41,7 @@ pub(super) fn parse(descr: &str) -> Result<(ElementType, ByteOrder), HeaderError
             _ => "an array of another type",
         };
         let found = format!("{kind} (dtype '{}')", shorten(descr));
-        unlike(found, "bool, (u)int8 to (u)int64, float16, float32 or float64; convert it with .astype(...)")
+        unlike(found, "bool, (u)int8 to (u)int64, float16, float32, float64, complex64 or complex128; convert it with .astype(...)")
     })
 }
 
@@ -62,7 +64,7 @@ mod tests {
     fn descriptions_of_real_numbers_are_understood_and_others_are_not() {
         assert_eq!(plain_number(">u2"), Some((ElementType::U16, ByteOrder::Big)));
         assert_eq!(plain_number("|b1"), Some((ElementType::Bool, ByteOrder::Little)));
-        for descr in ["|O", "<U3", "<c8", "<f16", "|u2", "=f4", "", "é4", "<m8[us]"] {
+        for descr in ["|O", "<U3", "<c32", "<f16", "|u2", "=f4", "", "é4", "<m8[us]"] {
             assert_eq!(plain_number(descr), None, "{descr}");
         }
         for element in ElementType::all() {

@@ -189,7 +189,7 @@ mod tests {
         let cases = [
             ("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }", "Python objects"),
             ("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3,), }", "structured"),
-            ("{'descr': '<c8', 'fortran_order': False, 'shape': (3,), }", "complex"),
+            ("{'descr': '<c32', 'fortran_order': False, 'shape': (3,), }", "complex"),
             ("{'descr': '<U8', 'fortran_order': False, 'shape': (3,), }", "strings"),
             ("{'descr': '<f4', 'fortran_order': False, 'shape': (-3,), }", "expected a dimension"),
             (

@@ -239,7 +239,10 @@ mod tests {
         assert_eq!(curve.samples.len(), 2);
         assert!(matches!(
             curve.warnings[..],
-            [ExposureWarning::NoMeasurement { integration_time_us: 300.0, .. }]
+            [
+                ExposureWarning::NoMeasurement { integration_time_us: 300.0, .. },
+                ExposureWarning::NoRepeats { .. }
+            ]
         ));
     }
 
