@@ -39,6 +39,7 @@ pub fn plan_with(
     source: &mut dyn FrameSource,
     observer: &dyn Observer,
 ) -> Result<Standardizer, PipelineError> {
+    source.facts().remark_on_lens(observer);
     let mut choice = *choice;
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
     if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {

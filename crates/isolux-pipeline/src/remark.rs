@@ -5,6 +5,7 @@ use std::fmt;
 use isolux::Advice;
 use isolux::calibrate::AmbientUnknown;
 use isolux::standardize::Note;
+use isolux_io::recording::UnusedLens;
 
 /// How much a remark matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +23,22 @@ pub enum Severity {
 pub enum Remark {
     /// A note of the plan of a chain.
     Plan(Note),
+    /// Fields about the lens of a recording are not used.
+    LensUnused {
+        /// The recording.
+        recording: String,
+        /// The fields, and why.
+        unused: UnusedLens,
+    },
+    /// Pixels that the lens of a recording gives no ray.
+    PixelsWithoutRay {
+        /// The recording.
+        recording: String,
+        /// Their number.
+        pixels: usize,
+        /// Number of all pixels.
+        of: usize,
+    },
     /// The noise of the amplitude had to be taken from neighbouring pixels.
     NoiseFromNeighbours {
         /// The recording.
@@ -55,12 +72,14 @@ impl Remark {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
-            Self::Plan(_) | Self::NoiseFromNeighbours { .. } | Self::AmbientLightUnknown { .. } => {
-                Severity::Note
-            }
-            Self::SceneMoved { .. } | Self::CamerasDiffer { .. } | Self::FrequenciesDiffer => {
-                Severity::Warning
-            }
+            Self::Plan(_)
+            | Self::PixelsWithoutRay { .. }
+            | Self::NoiseFromNeighbours { .. }
+            | Self::AmbientLightUnknown { .. } => Severity::Note,
+            Self::LensUnused { .. }
+            | Self::SceneMoved { .. }
+            | Self::CamerasDiffer { .. }
+            | Self::FrequenciesDiffer => Severity::Warning,
         }
     }
 
@@ -79,6 +98,14 @@ impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Plan(note) => note.fmt(f),
+            Self::LensUnused { recording, unused } => write!(
+                f,
+                "`{recording}`: {unused}; without them, distances and angles are wrong towards the edges of the image"
+            ),
+            Self::PixelsWithoutRay { recording, pixels, of } => write!(
+                f,
+                "`{recording}`: {pixels} of {of} pixels have no ray in its lens: no angle, and no distance from a depth"
+            ),
             Self::NoiseFromNeighbours { recording } => write!(
                 f,
                 "`{recording}`: no two consecutive frames share an integration time: the noise is taken from \

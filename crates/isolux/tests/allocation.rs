@@ -155,7 +155,7 @@ fn a_stream_tells_the_bytes_that_it_holds() {
     let traits = RecordingTraits {
         channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
         shape: Some(shape),
-        intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
+        lens: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }.into()),
         modulation_frequency_hz: None,
         ambient_light: None,
     };
@@ -186,7 +186,7 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     let traits = RecordingTraits {
         channels: Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME,
         shape: Some(shape),
-        intrinsics: Some(intrinsics),
+        lens: Some(intrinsics.into()),
         modulation_frequency_hz: None,
         ambient_light: None,
     };

@@ -4,7 +4,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `element`, `info`, `metadata` | number types; `recording.json`; what is known of a recording |
+//! | `element`, `lens`, `info`, `metadata` | number types; the lens in `recording.json`; that file; what is known of a recording |
 //! | `channels` | the channels with a meaning: name, dimensions, flag |
 //! | `source` | [`ChannelSource`]: what a format has to deliver |
 //! | `reading` | [`Recording`]: what readers see |
@@ -21,6 +21,7 @@ mod assemble;
 mod channels;
 mod element;
 mod info;
+mod lens;
 mod metadata;
 mod native;
 mod npy;
@@ -32,7 +33,8 @@ mod writer;
 pub use assemble::Assembled;
 pub use element::{ByteOrder, Element, ElementType, Number};
 pub use info::{DistanceKind, DistanceUnit, RecordedIntrinsics, RecordingInfo};
-pub use metadata::{Access, ChannelInfo, Metadata, Storage};
+pub use lens::{LensDescription, UnusedLens, UnusedReason};
+pub use metadata::{Access, ChannelInfo, Metadata, Storage, lens_of};
 pub use open::open;
 pub use reading::{Recording, for_each_frame};
 pub use source::{ChannelSource, RawFrame, SourceDescription, StoredChannel};

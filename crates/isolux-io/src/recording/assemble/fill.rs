@@ -1,6 +1,6 @@
 //! From loaded channels to a [`Frame`].
 
-use isolux::{Channels, Frame, PixelFlags, Plane, phase};
+use isolux::{Channels, Frame, Lens, PixelFlags, Plane, phase};
 
 use super::bins;
 use super::distance::DistanceScale;
@@ -19,9 +19,9 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    pub(super) fn new(description: &SourceDescription, places: &Places) -> Self {
+    pub(super) fn new(description: &SourceDescription, places: &Places, lens: Option<Lens>) -> Self {
         let distance = places.get(Channels::DISTANCE).map(|place| description.channels[place].element);
-        let distance_scale = DistanceScale::new(&description.info, distance);
+        let distance_scale = DistanceScale::new(&description.info, distance, lens);
         Self { distance_scale, bins: None, numbers: Vec::new() }
     }
 }

@@ -114,7 +114,7 @@ fn settings() -> CalibrateSettings {
 }
 
 fn measure(walls: &Walls, poses: &[Rigid], times_us: &[f64], motion: CameraMotion) -> SceneObservations {
-    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE), motion);
+    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE.into()), motion);
     for (number, pose) in poses.iter().enumerate() {
         let frame = frame(walls, pose, times_us[number % times_us.len()], number as u64 + 1);
         sweep.push(&frame).unwrap();
@@ -174,7 +174,7 @@ fn a_camera_in_the_hand_tells_everything_of_unknown_surfaces() {
 #[test]
 fn the_motion_is_estimated_where_it_is_not_recorded() {
     let poses = carried(24, 0.3);
-    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE), CameraMotion::Estimated);
+    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE.into()), CameraMotion::Estimated);
     for (number, pose) in poses.iter().enumerate() {
         let frame = frame(&room(), pose, TIMES_US[number % 2], number as u64 + 1);
         sweep.push(&Frame { world_from_camera: None, ..frame }).unwrap();
@@ -258,7 +258,7 @@ fn recordings_that_lack_what_they_should_have_are_refused_by_frame() {
     let with = |change: &dyn Fn(&mut Frame)| {
         let mut frame = good.clone();
         change(&mut frame);
-        push(Some(PINHOLE), CameraMotion::Recorded, &frame).unwrap_err()
+        push(Some(PINHOLE.into()), CameraMotion::Recorded, &frame).unwrap_err()
     };
     assert!(with(&|frame| frame.distance_m = None).contains("frame 0: no distance"));
     assert!(with(&|frame| frame.world_from_camera = None).contains("frame 0: no pose"));
@@ -267,7 +267,7 @@ fn recordings_that_lack_what_they_should_have_are_refused_by_frame() {
     assert!(push(None, CameraMotion::Estimated, &good).unwrap_err().contains("no intrinsics"));
     assert_eq!(push(None, CameraMotion::Still, &good), Ok(()));
     // A frame without a usable pixel is left out.
-    let mut sweep = SceneSweep::new("dark", &settings(), Some(PINHOLE), CameraMotion::Recorded);
+    let mut sweep = SceneSweep::new("dark", &settings(), Some(PINHOLE.into()), CameraMotion::Recorded);
     sweep.push(&Frame { distance_m: Some(good.amplitude.clone()), ..Frame::new(SHAPE) }).unwrap();
     let scene = sweep.finish();
     assert_eq!((scene.source.frames_used, scene.source.frames_left_out), (0, 1));

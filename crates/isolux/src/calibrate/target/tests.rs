@@ -5,7 +5,7 @@ use crate::calibrate::factor_terms::FactorWarning;
 use crate::calibrate::{
     CalibrateError, CalibrateSettings, ExposureFit, FitWarning, MeasureError, Measurements,
 };
-use crate::frame::{Frame, Intrinsics, Plane, Shape};
+use crate::frame::{Frame, Intrinsics, Lens, Plane, Shape};
 use crate::terms::profile::Places;
 
 const SHAPE: Shape = Shape::new(60, 80);
@@ -42,7 +42,7 @@ fn board(z: f64, slant: [f64; 2], state: &mut u64) -> Frame {
 
 fn calibrated(frames: &[Frame], intrinsics: Option<Intrinsics>) -> (crate::Calibration, Vec<FitWarning>) {
     let settings = CalibrateSettings::default();
-    let mut sweep = TargetSweep::new("board", &settings, intrinsics);
+    let mut sweep = TargetSweep::new("board", &settings, intrinsics.map(Lens::from));
     frames.iter().try_for_each(|frame| sweep.push(frame)).unwrap();
     let mut measured = Measurements::default();
     measured.add_target(sweep.finish());
