@@ -43,9 +43,15 @@ fn one_lens_has_many_spellings() {
         (r#", "D": [1, 1, 0, 0, 1, 1, 1, 1], "model": null"#, "rational polynomial, 8 coefficients"),
         (r#", "k1": 1, "k6": 0.8"#, "rational polynomial, 8 coefficients"),
         (r#", "model": "equidistant", "k1": 0.1, "k4": 0.2"#, "Kannala–Brandt fisheye, 4 coefficients"),
-        (r#", "model": "KANNALA_BRANDT4", "coeffs": [0.1, 0, 0, 0, 0]"#, "Kannala–Brandt fisheye, 4 coefficients"),
+        (
+            r#", "model": "KANNALA_BRANDT4", "coeffs": [0.1, 0, 0, 0, 0]"#,
+            "Kannala–Brandt fisheye, 4 coefficients",
+        ),
         (r#", "model": "fisheye""#, "Kannala–Brandt fisheye, 4 coefficients"),
-        (r#", "model": "inverse_brown_conrady", "coeffs": [0.1, 0, 0, 0, 0]"#, "inverse Brown–Conrady, 5 coefficients"),
+        (
+            r#", "model": "inverse_brown_conrady", "coeffs": [0.1, 0, 0, 0, 0]"#,
+            "inverse Brown–Conrady, 5 coefficients",
+        ),
     ] {
         assert_eq!(described(fields), (expected.to_owned(), None), "{fields}");
     }
@@ -64,7 +70,8 @@ fn what_is_not_used_is_said() {
     let unused = unused.unwrap();
     assert_eq!(lens, "pinhole");
     assert!(
-        unused.starts_with("`intrinsics.k1, k2` not used: a distortion model named `ftheta` found; known are"),
+        unused
+            .starts_with("`intrinsics.k1, k2` not used: a distortion model named `ftheta` found; known are"),
         "{unused}"
     );
     let (lens, unused) = described(r#", "k1": 0.45, "k2": 0.1, "k4": 0.8"#);
@@ -79,7 +86,10 @@ fn what_makes_no_lens_is_refused_with_its_field() {
         (r#", "model": 3"#, "field `intrinsics.model`: found 3, expected the name"),
         (r#", "k1": "0.1""#, "field `intrinsics.k1`: found \"0.1\", expected a finite number"),
         (r#", "D": [1, null]"#, "field `intrinsics.D`: found [1,null], expected a list of finite numbers"),
-        (r#", "model": "plumb_bob", "D": [0.1, 0.2]"#, "field `intrinsics.D`: found [0.1,0.2], expected 2 coeff"),
+        (
+            r#", "model": "plumb_bob", "D": [0.1, 0.2]"#,
+            "field `intrinsics.D`: found [0.1,0.2], expected 2 coeff",
+        ),
         (r#", "model": "kb4", "D": [0.1, 0.2, 0, 0, 1]"#, "4 (k1, k2, k3, k4) expected"),
     ];
     for (fields, expected) in cases {

@@ -149,7 +149,7 @@ impl RecordingInfo {
             other: Map::new(),
         };
         let info = Self { other: fields, ..info };
-        info.read_lens().map_err(|bad| info_error(path, &bad.field, &bad.found, &bad.expected))?;
+        info.read_lens().map_err(|bad| RecordingError::info(path, &bad.field, &bad.found, &bad.expected))?;
         Ok(info)
     }
 
@@ -168,7 +168,7 @@ struct Fields<'a> {
 
 impl Fields<'_> {
     fn error(&self, field: &str, found: &Value, expected: &str) -> RecordingError {
-        info_error(self.path, field, found, expected)
+        RecordingError::info(self.path, field, found, expected)
     }
 
     /// The field, or `None` where it is absent or null.
@@ -223,19 +223,6 @@ impl Fields<'_> {
             }
             (_, value) => Err(self.error("intrinsics", &value, expected)),
         }
-    }
-}
-
-fn info_error(path: &Path, field: &str, found: &Value, expected: &str) -> RecordingError {
-    let mut found = found.to_string();
-    if found.chars().count() > 80 {
-        found = found.chars().take(77).collect::<String>() + "...";
-    }
-    RecordingError::Info {
-        path: path.to_owned(),
-        field: field.to_owned(),
-        found,
-        expected: expected.to_owned(),
     }
 }
 

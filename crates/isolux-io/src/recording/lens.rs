@@ -121,7 +121,8 @@ fn distorted(pinhole: Intrinsics, fields: &Map<String, Value>) -> Result<LensDes
             plain(Some(UnusedLens { fields: format!("{place}.{names}"), reason: UnusedReason::NoModel }))
         });
     };
-    let values = if names.starts_with('k') || names.starts_with('p') { in_order(&model, values) } else { values };
+    let values =
+        if names.starts_with('k') || names.starts_with('p') { in_order(&model, values) } else { values };
     match Distortion::named(&model, &values) {
         Ok(None) => Ok(plain(None)),
         Ok(Some(distortion)) => {
@@ -157,9 +158,8 @@ fn coefficients(place: &str, fields: &Map<String, Value>) -> Result<Coefficients
     let (mut names, mut values) = (Vec::new(), Vec::new());
     for name in NAMED {
         let value = fields.get(name).filter(|value| !value.is_null());
-        let number = value.map(|value| {
-            value.as_f64().ok_or_else(|| BadLens::new(&field(name), value, "a finite number"))
-        });
+        let number = value
+            .map(|value| value.as_f64().ok_or_else(|| BadLens::new(&field(name), value, "a finite number")));
         names.extend(number.is_some().then_some(name));
         values.push(number.transpose()?.unwrap_or(0.0));
     }

@@ -156,7 +156,9 @@ pub enum PlanError {
     #[error("`angle` was asked for, but the recording has no intrinsics and no rays")]
     IntrinsicsMissing,
     /// The angle was asked for with a lens whose rays depend on the shape of the frames, which was not given.
-    #[error("`angle` was asked for, but the shape of the frames, which the rays of their lens depend on, is unknown")]
+    #[error(
+        "`angle` was asked for, but the shape of the frames, which the rays of their lens depend on, is unknown"
+    )]
     LensWithoutShape,
     /// The lens does not fit the frames.
     #[error("`angle` was asked for, but the lens does not fit the frames: {0}")]

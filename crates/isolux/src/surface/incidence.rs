@@ -34,12 +34,7 @@ impl Incidence {
     }
 
     /// Cosines of all pixels of a frame, row by row.
-    pub(crate) fn cosines(
-        &mut self,
-        frame: &Frame,
-        distance_m: &Plane<f32>,
-        rays: &PixelRays,
-    ) -> &[f32] {
+    pub(crate) fn cosines(&mut self, frame: &Frame, distance_m: &Plane<f32>, rays: &PixelRays) -> &[f32] {
         self.take(frame, distance_m, rays);
         self.normals.cosines(rays)
     }
@@ -216,9 +211,8 @@ mod tests {
     #[test]
     fn the_angle_of_a_plane_is_exact_behind_any_lens() {
         let wide = Intrinsics { fx: 30.0, fy: 31.0, cx: 38.0, cy: 31.0 };
-        let distorted = |name: &str, k: &[f64]| {
-            Lens::Distorted(wide, Distortion::named(name, k).unwrap().unwrap())
-        };
+        let distorted =
+            |name: &str, k: &[f64]| Lens::Distorted(wide, Distortion::named(name, k).unwrap().unwrap());
         let lenses = [
             Lens::Pinhole(wide),
             distorted("fisheye", &[0.01, -0.002, 0.0, 0.0]),

@@ -119,9 +119,11 @@ fn check_lens(
     let LensDescription { lens, unused } = metadata::lens_of(rays, info, shape);
     if let Some(wrong) = lens.as_ref().and_then(|lens| lens.check_shape(shape).err()) {
         return match lens {
-            Some(Lens::Rays(_)) => {
-                Err(RecordingError::content(&description.path.join("rays"), wrong.to_string(), "one of each pixel"))
-            }
+            Some(Lens::Rays(_)) => Err(RecordingError::content(
+                &description.path.join("rays"),
+                wrong.to_string(),
+                "one of each pixel",
+            )),
             _ => error("intrinsics", wrong.to_string(), "a distortion that the image lies in the domain of"),
         };
     }
@@ -133,7 +135,8 @@ fn check_lens(
         }
         None if depth => {
             let found = unused.map_or("nothing".to_owned(), |unused| unused.to_string());
-            let expected = "{fx, fy, cx, cy} or a table of rays: without them the z distance cannot be made radial";
+            let expected =
+                "{fx, fy, cx, cy} or a table of rays: without them the z distance cannot be made radial";
             error("intrinsics", found, expected)
         }
         _ => Ok(()),

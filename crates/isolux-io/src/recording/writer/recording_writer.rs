@@ -137,7 +137,11 @@ impl RecordingWriter {
     /// [`RecordingError::Write`] where there is a channel of that name or a table already; [`RecordingError::Io`].
     pub fn write_rays(&mut self, rays: &RayTable) -> Result<(), RecordingError> {
         if self.has_rays || self.channels.iter().any(|channel| channel.spec.name == RAYS) {
-            return Err(RecordingError::write(self.output.path(), "two arrays named `rays`", "each name once"));
+            return Err(RecordingError::write(
+                self.output.path(),
+                "two arrays named `rays`",
+                "each name once",
+            ));
         }
         let shape = rays.shape();
         let path = self.output.staging().join(format!("{RAYS}.npy"));

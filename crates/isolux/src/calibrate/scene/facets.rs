@@ -237,7 +237,8 @@ mod tests {
         let distances: Vec<Depth> = depths.iter().enumerate().map(along).collect();
         let (flat, any) =
             (fit(&depths, SHAPE, &PixelRays::Pinhole(PINHOLE), 4), fit(&distances, SHAPE, &table, 4));
-        let both: Vec<(&Facet, &Facet)> = flat.iter().zip(&any).filter_map(|(a, b)| a.as_ref().zip(b.as_ref())).collect();
+        let both: Vec<(&Facet, &Facet)> =
+            flat.iter().zip(&any).filter_map(|(a, b)| a.as_ref().zip(b.as_ref())).collect();
         assert_eq!(both.len(), flat.iter().flatten().count());
         for (flat, any) in both {
             // The same equations in other words: only rounding, of sums that are not centred, is between them.

@@ -132,9 +132,8 @@ impl View {
 
 /// Inverse depth in the axes of a pinhole, inverse distance for any other lens, 1/m; NaN where there is none.
 fn inverse_depth(frame: &Frame, distances_m: &[f32], rays: &PixelRays) -> Vec<f64> {
-    let fine = |index: usize, distance_m: f32| {
-        frame.is_valid(index) && distance_m > 0.0 && distance_m.is_finite()
-    };
+    let fine =
+        |index: usize, distance_m: f32| frame.is_valid(index) && distance_m > 0.0 && distance_m.is_finite();
     let measured = distances_m.iter().enumerate();
     match rays {
         PixelRays::Pinhole(pinhole) => {

@@ -226,7 +226,8 @@ mod tests {
             for seed in 0..10 {
                 let of = |ray: &Vector3<f64>| radial(&inverse, ray).unwrap();
                 let (frame, target) = frame(of, NOISE_M, seed);
-                let plane = FlatLabel::fit(&frame, &target, 1, &windows(), &PixelRays::Pinhole(INTRINSICS)).unwrap();
+                let plane =
+                    FlatLabel::fit(&frame, &target, 1, &windows(), &PixelRays::Pinhole(INTRINSICS)).unwrap();
                 let mut window = window();
                 assert!(plane.place(&mut window));
                 found_m += 0.1 * f64::from(window.distance_m);
@@ -254,6 +255,9 @@ mod tests {
         };
         let (bent, target) = frame(ball, 0.002, 1);
         assert!(FlatLabel::fit(&bent, &target, 1, &windows(), &PixelRays::Pinhole(INTRINSICS)).is_none());
-        assert!(FlatLabel::fit(&bent, &target, 2, &windows(), &PixelRays::Pinhole(INTRINSICS)).is_none(), "not in sight");
+        assert!(
+            FlatLabel::fit(&bent, &target, 2, &windows(), &PixelRays::Pinhole(INTRINSICS)).is_none(),
+            "not in sight"
+        );
     }
 }

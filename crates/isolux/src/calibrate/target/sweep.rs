@@ -59,11 +59,7 @@ impl TargetSweep {
     /// Starts a recording; `recording` is its name in errors and in the calibration. Without a `lens`, there are
     /// no angles.
     #[must_use]
-    pub fn new(
-        recording: impl Into<String>,
-        settings: &CalibrateSettings,
-        lens: Option<Lens>,
-    ) -> Self {
+    pub fn new(recording: impl Into<String>, settings: &CalibrateSettings, lens: Option<Lens>) -> Self {
         Self {
             frames: SweepFrames::new(recording, settings),
             frames_used: 0,

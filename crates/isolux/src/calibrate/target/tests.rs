@@ -19,7 +19,7 @@ fn ln_profile([x, y]: [f64; 2]) -> f64 {
 /// A board through (0, 0, z), `slant` its slopes over x and y, that fills the image; 1 % of noise.
 fn board(z: f64, slant: [f64; 2], state: &mut u64) -> Frame {
     let mut frame = Frame::new(SHAPE);
-    let places = Places::new(SHAPE, Some(&INTRINSICS));
+    let places = Places::new(SHAPE, Some(&INTRINSICS.into()));
     let mut distances = Plane::filled(SHAPE, 0.0);
     for index in 0..SHAPE.pixels() {
         let (row, column) = ((index / SHAPE.width) as f64, (index % SHAPE.width) as f64);

@@ -6,10 +6,6 @@ use super::error::LensError;
 use super::fisheye::Fisheye;
 use super::polynomial::Polynomial;
 
-/// Names that are understood, for messages. Of each model the first is our own.
-pub(super) const KNOWN_NAMES: &str = "`brown_conrady` (plumb_bob, radtan), `inverse_brown_conrady`, `rational` \
-     (rational_polynomial), `fisheye` (equidistant, kannala_brandt, kb4) and `none`";
-
 /// A distortion of the image of a pinhole. Places are those at depth 1: pixels from the principal point over the focal
 /// length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +37,8 @@ impl Model {
     /// Upper and lower case, `-` and spaces make no difference.
     fn named(name: &str) -> Option<Self> {
         let plain: String = name.trim().to_lowercase().replace(['-', ' ', '–'], "_");
-        let plain = plain.strip_prefix("distortion.").or(plain.strip_prefix("rs2_distortion_")).unwrap_or(&plain);
+        let plain =
+            plain.strip_prefix("distortion.").or(plain.strip_prefix("rs2_distortion_")).unwrap_or(&plain);
         Some(match plain {
             "" | "none" | "pinhole" | "perspective" | "ideal" => Self::None,
             "brown_conrady" | "brown" | "plumb_bob" | "radtan" | "radial_tangential" | "opencv" => {

@@ -2,15 +2,16 @@
 
 use crate::frame::Shape;
 
+/// Names of distortions that are understood. Of each model the first is our own.
+const KNOWN_NAMES: &str = "`brown_conrady` (plumb_bob, radtan), `inverse_brown_conrady`, `rational` \
+     (rational_polynomial), `fisheye` (equidistant, kannala_brandt, kb4) and `none`";
+
 /// A description of a lens that cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LensError {
     /// A distortion of a name that isolux does not know.
-    #[error(
-        "a distortion model named `{name}` found; known are {}",
-        super::distortion::KNOWN_NAMES
-    )]
+    #[error("a distortion model named `{name}` found; known are {}", KNOWN_NAMES)]
     UnknownModel {
         /// The name, as it was given.
         name: String,

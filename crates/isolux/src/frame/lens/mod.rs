@@ -66,8 +66,11 @@ impl Lens {
         match self {
             Self::Pinhole(_) => Ok(()),
             Self::Distorted(..) => {
-                let blind = shape.pixels() > 0 && self.pixel_rays(shape).blind_pixels() == shape.pixels();
-                if blind { Err(LensError::SeesNothing) } else { Ok(()) }
+                let sees = |index: usize| {
+                    let (row, column) = shape.place(index);
+                    self.ray(shape, row, column).is_some()
+                };
+                if (0..shape.pixels()).any(sees) { Ok(()) } else { Err(LensError::SeesNothing) }
             }
             Self::Spinning(lidar) => lidar.check_shape(shape),
             Self::Rays(table) if table.shape() == shape => Ok(()),

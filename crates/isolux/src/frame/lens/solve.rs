@@ -13,7 +13,11 @@ pub(super) fn root(of: impl Fn(f64) -> (f64, f64), end: f64, value: f64) -> Opti
     let mut x = value.min(0.5 * end);
     for _ in 0..ROUNDS {
         let (here, slope) = of(x);
-        if here < value { low = x } else { high = x }
+        if here < value {
+            low = x
+        } else {
+            high = x
+        }
         let newton = x - (here - value) / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if (next - x).abs() <= 1e-15 * (1.0 + x) {

@@ -111,8 +111,10 @@ fn a_fisheye_looks_backwards_too() {
 #[test]
 fn pixels_beyond_the_fold_of_a_polynomial_see_nothing() {
     // r − 0.3 r³ grows up to r = 1.054, where it is 0.703.
-    let lens =
-        Lens::Distorted(Intrinsics { fx: 10.0, fy: 10.0, cx: 10.0, cy: 0.0 }, named("brown", &[-0.3, 0.0, 0.0, 0.0]));
+    let lens = Lens::Distorted(
+        Intrinsics { fx: 10.0, fy: 10.0, cx: 10.0, cy: 0.0 },
+        named("brown", &[-0.3, 0.0, 0.0, 0.0]),
+    );
     let shape = Shape::new(1, 21);
     let seen: Vec<bool> = (0..21).map(|column| lens.ray(shape, 0, column).is_some()).collect();
     assert_eq!(seen, (0..21).map(|column: i32| (column - 10).abs() <= 7).collect::<Vec<_>>());
@@ -142,7 +144,10 @@ fn a_lidar_turns_clockwise_from_straight_ahead() {
 #[test]
 fn descriptions_that_cannot_be_used_say_why() {
     let message = |name: &str, values: &[f64]| Distortion::named(name, values).unwrap_err().to_string();
-    assert!(message("f-theta", &[1.0]).contains("a distortion model named `f-theta` found; known are `brown_conrady`"));
+    assert!(
+        message("f-theta", &[1.0])
+            .contains("a distortion model named `f-theta` found; known are `brown_conrady`")
+    );
     let count = message("Plumb Bob", &[0.1, 0.2]);
     assert_eq!(
         count,
@@ -150,7 +155,10 @@ fn descriptions_that_cannot_be_used_say_why() {
     );
     assert!(message("none", &[0.1]).starts_with("1 coefficients of the distortion model `none`"));
     assert!(message("fisheye", &[f64::NAN; 4]).contains("not a finite number"));
-    assert!(message("rational", &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 2.0, 0.0, 0.0]).contains("(the 9th"));
+    assert!(
+        message("rational", &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 2.0, 0.0, 0.0])
+            .contains("(the 9th")
+    );
     for name in ["plumb_bob", "", "rational_polynomial", "None"] {
         assert_eq!(Distortion::named(name, &[]), Ok(None), "{name}");
         assert_eq!(Distortion::named(name, &[0.0; 8]), Ok(None), "{name}");
