@@ -96,7 +96,7 @@ fn beams(other: &Map<String, Value>) -> Result<Option<Arc<SpinningLidar>>, BadLe
     let lidar = SpinningLidar::new(&angles(ALTITUDES)?, &angles(AZIMUTHS)?);
     let bad = |error: LensError| {
         let name = if matches!(error, LensError::AzimuthCount { .. }) { AZIMUTHS } else { ALTITUDES };
-        BadLens::new(name, &fields.get(name).cloned().unwrap_or_default(), error.to_string())
+        BadLens::new(name, &fields.get(name).cloned().unwrap_or_default(), error.expected())
     };
     lidar.map(|lidar| Some(Arc::new(lidar))).map_err(bad)
 }
@@ -134,7 +134,7 @@ fn distorted(pinhole: Intrinsics, fields: &Map<String, Value>) -> Result<LensDes
         }
         Err(error) => {
             let field = if names.is_empty() { place.to_owned() } else { format!("{place}.{names}") };
-            Err(BadLens::new(&field, &values.into(), error.to_string()))
+            Err(BadLens::new(&field, &values.into(), error.expected()))
         }
     }
 }

@@ -119,12 +119,10 @@ fn check_lens(
     let LensDescription { lens, unused } = metadata::lens_of(rays, info, shape);
     if let Some(wrong) = lens.as_ref().and_then(|lens| lens.check_shape(shape).err()) {
         return match lens {
-            Some(Lens::Rays(_)) => Err(RecordingError::content(
-                &description.path.join("rays"),
-                wrong.to_string(),
-                "one of each pixel",
-            )),
-            _ => error("intrinsics", wrong.to_string(), "a distortion that the image lies in the domain of"),
+            Some(Lens::Rays(_)) => {
+                Err(RecordingError::content(&description.path.join("rays"), wrong.found(), wrong.expected()))
+            }
+            _ => error("intrinsics", wrong.found(), &wrong.expected()),
         };
     }
     let depth = info.distance_kind == Some(DistanceKind::Z) && stored.contains(Channels::DISTANCE);

@@ -38,9 +38,9 @@ pub(super) fn take(arrays: &mut Vec<ArrayFile>) -> Result<Option<Arc<RayTable>>,
         rows.raw().read_f64(values);
     }
     let table = RayTable::new(Shape::new(height, width), &values);
-    table.map(|table| Some(Arc::new(table))).map_err(|error| {
-        RecordingError::content(&path, error.to_string(), "directions: x to the right, y down, z ahead")
-    })
+    table
+        .map(|table| Some(Arc::new(table)))
+        .map_err(|error| RecordingError::content(&path, error.found(), error.expected()))
 }
 
 /// Memory for a table in Fortran order.

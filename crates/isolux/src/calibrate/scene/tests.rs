@@ -7,9 +7,12 @@ use super::*;
 use crate::calibrate::joint::Factor;
 use crate::calibrate::{CalibrateSettings, ExposureFit, FitReport, FitWarning, Measurements};
 use crate::calibration::{Calibration, Reference};
-use crate::frame::{Frame, IntegrationTime, Intrinsics, Shape};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, Lens, Shape};
 use crate::numerics::hash::splitmix64;
 use crate::terms::lut::LutAnswer;
+
+#[path = "lens_tests.rs"]
+mod lenses;
 
 const SHAPE: Shape = Shape { height: 66, width: 88 };
 const PINHOLE: Intrinsics = Intrinsics { fx: 80.0, fy: 80.0, cx: 43.0, cy: 33.0 };
@@ -57,11 +60,16 @@ fn ln_v(row: f64, column: f64) -> f64 {
 
 /// One frame from a pose.
 fn frame(walls: &Walls, pose: &Rigid, time_us: f64, seed: u64) -> Frame {
+    frame_through(&PINHOLE.into(), walls, pose, time_us, seed)
+}
+
+fn frame_through(lens: &Lens, walls: &Walls, pose: &Rigid, time_us: f64, seed: u64) -> Frame {
     let mut frame = Frame::new(SHAPE);
     let mut distances = frame.amplitude.clone();
     for index in 0..SHAPE.pixels() {
         let (row, column) = ((index / SHAPE.width) as f64, (index % SHAPE.width) as f64);
-        let ray = pose.rotation * Vector3::from(PINHOLE.ray(row, column)).normalize();
+        let seen = lens.ray(SHAPE, index / SHAPE.width, index % SHAPE.width).unwrap();
+        let ray = pose.rotation * Vector3::from(seen).normalize();
         let hit = |(number, (normal, offset)): (usize, &(Vector3<f64>, f64))| {
             let distance = (offset - normal.dot(&pose.translation)) / normal.dot(&ray);
             (distance > 0.0).then_some((distance, normal.dot(&ray), number))

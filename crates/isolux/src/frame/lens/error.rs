@@ -1,5 +1,7 @@
 //! What is wrong with the description of a lens.
 
+use std::fmt;
+
 use crate::frame::Shape;
 
 /// Names of distortions that are understood. Of each model the first is our own.
@@ -7,17 +9,15 @@ const KNOWN_NAMES: &str = "`brown_conrady` (plumb_bob, radtan), `inverse_brown_c
      (rational_polynomial), `fisheye` (equidistant, kannala_brandt, kb4) and `none`";
 
 /// A description of a lens that cannot be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LensError {
     /// A distortion of a name that isolux does not know.
-    #[error("a distortion model named `{name}` found; known are {}", KNOWN_NAMES)]
     UnknownModel {
         /// The name, as it was given.
         name: String,
     },
     /// The wrong number of coefficients.
-    #[error("{found} coefficients of the distortion model `{model}` found, {expected} expected")]
     CoefficientCount {
         /// The model.
         model: &'static str,
@@ -27,28 +27,20 @@ pub enum LensError {
         expected: &'static str,
     },
     /// Coefficients that are not finite.
-    #[error("a coefficient of the distortion model `{model}` that is not a finite number found")]
     NotFinite {
         /// The model.
         model: &'static str,
     },
     /// Coefficients of a sensor that is tilted against its lens, and of thin prisms.
-    #[error(
-        "coefficients of thin prisms or a tilted sensor (the 9th and later, {value}) found, 0 expected: they are not \
-         modelled"
-    )]
     Prisms {
         /// The first of them that is not 0.
         value: f64,
     },
     /// A distortion that no pixel of the image lies in the domain of.
-    #[error("a distortion that has no inverse at any pixel of the image found")]
     SeesNothing,
     /// Altitudes or azimuths of beams that are no angles.
-    #[error("beam angles that are not finite, or altitudes beyond ±90° found, degrees expected")]
     BeamAngles,
     /// Another number of azimuths than of altitudes.
-    #[error("{found} beam azimuths found, {expected} expected, as many as there are altitudes")]
     AzimuthCount {
         /// Number of azimuths.
         found: usize,
@@ -56,7 +48,6 @@ pub enum LensError {
         expected: usize,
     },
     /// Another number of beams than the image has rows.
-    #[error("{found} beam altitudes found, {expected} expected, as many as the image has rows")]
     BeamCount {
         /// Number of beams.
         found: usize,
@@ -64,7 +55,6 @@ pub enum LensError {
         expected: usize,
     },
     /// A table of rays of another shape than the image.
-    #[error("a table of rays of {found} found, {expected} expected")]
     TableShape {
         /// Shape of the table.
         found: Shape,
@@ -72,7 +62,6 @@ pub enum LensError {
         expected: Shape,
     },
     /// Another number of values than three for each pixel.
-    #[error("{found} values of a table of rays found, {expected} expected, three for each pixel")]
     TableValues {
         /// Number of values.
         found: usize,
@@ -80,10 +69,6 @@ pub enum LensError {
         expected: usize,
     },
     /// A ray that points nowhere.
-    #[error(
-        "a ray of {ray:?} at row {row}, column {column} found, a finite direction that is not 0 expected, or three NaN \
-         where the pixel sees nothing"
-    )]
     Ray {
         /// Row of the pixel.
         row: usize,
@@ -93,6 +78,59 @@ pub enum LensError {
         ray: [f64; 3],
     },
     /// A table in which no pixel sees anything.
-    #[error("a table without a single ray found")]
     EmptyTable,
 }
+
+impl LensError {
+    /// What was found.
+    #[must_use]
+    pub fn found(&self) -> String {
+        match self {
+            Self::UnknownModel { name } => format!("a distortion model named `{name}`"),
+            Self::CoefficientCount { model, found, .. } => {
+                format!("{found} coefficients of the distortion model `{model}`")
+            }
+            Self::NotFinite { model } => {
+                format!("a coefficient of the distortion model `{model}` that is not finite")
+            }
+            Self::Prisms { value } => format!("a 9th or later coefficient of {value}"),
+            Self::SeesNothing => "a distortion that has no inverse at any pixel of the image".to_owned(),
+            Self::BeamAngles => "a beam's angle that is not finite, or an altitude beyond ±90°".to_owned(),
+            Self::AzimuthCount { found, .. } => format!("{found} beam azimuths"),
+            Self::BeamCount { found, .. } => format!("{found} beam altitudes"),
+            Self::TableShape { found, .. } => format!("rays of {found}"),
+            Self::TableValues { found, .. } => format!("{found} values of a table of rays"),
+            Self::Ray { row, column, ray } => format!("a ray of {ray:?} at row {row}, column {column}"),
+            Self::EmptyTable => "a table without a single ray".to_owned(),
+        }
+    }
+
+    /// What should be there.
+    #[must_use]
+    pub fn expected(&self) -> String {
+        match self {
+            Self::UnknownModel { .. } => format!("one of {KNOWN_NAMES}"),
+            Self::CoefficientCount { model, expected, .. } => format!("{expected} of the model `{model}`"),
+            Self::NotFinite { .. } => "finite coefficients".to_owned(),
+            Self::Prisms { .. } => "0: thin prisms and tilted sensors are not modelled".to_owned(),
+            Self::SeesNothing => "one whose domain the image lies in".to_owned(),
+            Self::BeamAngles => "degrees".to_owned(),
+            Self::AzimuthCount { expected, .. } => format!("{expected}, as many as altitudes"),
+            Self::BeamCount { expected, .. } => format!("{expected}, as many as the image has rows"),
+            Self::TableShape { expected, .. } => format!("{expected}, one for each pixel"),
+            Self::TableValues { expected, .. } => format!("{expected}, three for each pixel"),
+            Self::Ray { .. } => {
+                "a finite direction that is not 0, or three NaN where the pixel sees nothing".to_owned()
+            }
+            Self::EmptyTable => "one for every pixel that sees something".to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for LensError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} found, {} expected", self.found(), self.expected())
+    }
+}
+
+impl std::error::Error for LensError {}

@@ -165,7 +165,7 @@ impl fmt::Display for Lens {
             Self::Pinhole(_) => f.write_str("pinhole"),
             Self::Distorted(_, distortion) => distortion.fmt(f),
             Self::Spinning(lidar) => write!(f, "spinning lidar, {} beams", lidar.beams()),
-            Self::Rays(table) => write!(f, "table of rays, {}", table.shape()),
+            Self::Rays(_) => f.write_str("table of rays"),
         }
     }
 }
