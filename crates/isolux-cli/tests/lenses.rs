@@ -151,23 +151,28 @@ fn a_wall_along_a_table_of_rays_is_flat_and_the_table_stays_with_the_result() {
     standardize(&sandbox, "--angle on");
 }
 
-/// Frames of a road below a lidar, from several heights: with one height, the angle would follow from the distance.
-fn road(sandbox: &Sandbox, exponent: f64) {
-    const BEAMS: usize = 24;
-    const COLUMNS: usize = 90;
-    let altitudes: Vec<f64> = (0..BEAMS).map(|row| -20.0 - 2.0 * row as f64).collect();
-    let heights_m = [0.7, 0.9, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3];
-    let dims = [heights_m.len(), BEAMS, COLUMNS];
+/// Frames of a road below a lidar at several heights and tilts. Level, each beam meets it at one angle, as if the beam were
+/// weaker; at one height, the angle would follow from the distance.
+fn road(exponent: f64) -> Sandbox {
+    const BEAMS: usize = 48;
+    const COLUMNS: usize = 120;
+    const FRAMES: usize = 12;
+    let altitudes_deg: Vec<f64> = (0..BEAMS).map(|row| -18.0 - 0.8 * row as f64).collect();
+    let dims = [FRAMES, BEAMS, COLUMNS];
     let (mut amplitude, mut distance_m, mut seed) = (Vec::new(), Vec::new(), 3);
-    for height_m in heights_m {
-        for altitude in &altitudes {
-            let cosine = -altitude.to_radians().sin();
-            for _ in 0..COLUMNS {
-                let d = height_m / cosine;
-                let exact = 2e4 * cosine.powf(exponent) / (d * d);
-                amplitude.push((exact + 5.0 * normal(&mut seed)).max(0.0));
-                distance_m.push(d + 0.003 * normal(&mut seed));
-            }
+    for frame in 0..FRAMES {
+        let height_m = [0.8, 1.2, 1.8, 2.6][frame % 4];
+        let (tilt_x, tilt_y) = (2.4 * frame as f64).sin_cos();
+        let up = [0.3 * tilt_x, 0.3 * tilt_y, 1.0].map(|value| value / 1.09f64.sqrt());
+        for (altitude_deg, column) in altitudes_deg.iter().flat_map(|a| (0..COLUMNS).map(move |c| (a, c))) {
+            let (up_by, across) = altitude_deg.to_radians().sin_cos();
+            let (sine, cosine) = (std::f64::consts::TAU * column as f64 / COLUMNS as f64).sin_cos();
+            let incidence = -(up[0] * cosine * across - up[1] * sine * across + up[2] * up_by);
+            let d = height_m / incidence.max(0.05);
+            let exact = 2e4 * incidence.max(0.05).powf(exponent) / (d * d) + 5.0 * normal(&mut seed);
+            let seen = incidence > 0.05;
+            amplitude.push(if seen { exact.max(0.0) } else { 0.0 });
+            distance_m.push(if seen { d + 0.003 * normal(&mut seed) } else { 0.0 });
         }
     }
     let channels = [
@@ -175,28 +180,27 @@ fn road(sandbox: &Sandbox, exponent: f64) {
         ("distance", Array::new("<f4", &dims, distance_m)),
         ("target", Array::filled("|u1", &dims, 1.0)),
     ];
-    let beams = altitudes.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let beams = altitudes_deg.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let json = format!(r#"{{"camera": "lidar", "beam_intrinsics": {{"beam_altitude_angles": [{beams}]}}}}"#);
+    let sandbox = Sandbox::new();
     sandbox.described("rec", &channels, &json);
+    sandbox
 }
 
 #[test]
 fn a_road_before_a_spinning_lidar_gives_the_angle() {
+    /// A window of five beams spans 3°: its medians are not those of its middle.
+    const COARSE_BEAMS: f64 = 0.015;
     for exponent in [1.0, 1.4] {
-        let sandbox = Sandbox::new();
-        road(&sandbox, exponent);
-        sandbox.run("info rec").done().prints("spinning lidar, 24 beams");
+        let sandbox = road(exponent);
+        sandbox.run("info rec").done().prints("spinning lidar, 48 beams");
         sandbox.run("calibrate --target rec -o lidar.json").done();
         let angle = &sandbox.json("lidar.json")["terms"]["angle"];
         let number = |field: &str| angle[field].as_f64().unwrap_or(f64::NAN);
         let (found, error) = (number("exponent"), number("standard_error"));
-        assert!(
-            (found - exponent).abs() < 4.0 * error && error < 0.05,
-            "{found} ± {error}, {exponent} expected"
-        );
-        sandbox
-            .run("standardize rec -o out -c lidar.json --angle on --distance square --profile off --force")
-            .done();
+        let away = (found - exponent).abs();
+        assert!(away < 4.0 * error + COARSE_BEAMS && error < 0.01, "{found} ± {error}, {exponent} expected");
+        sandbox.run("standardize rec -o out -c lidar.json --angle on --distance square --profile off").done();
     }
 }
 
