@@ -78,8 +78,8 @@ impl Model {
             Self::None => false,
             Self::BrownConrady => count == 4 || count == 5,
             Self::InverseBrownConrady => count == 5,
-            // OpenCV also writes 12 or 14: those of thin prisms and of a tilted sensor.
-            Self::Rational => count == 8 || count == 12 || count == 14,
+            // OpenCV has up to 14: those of thin prisms and of a tilted sensor, which are refused by their own name.
+            Self::Rational => (8..=14).contains(&count),
             Self::Fisheye => count == 0 || count == 4,
         }
     }
