@@ -25,7 +25,8 @@ fn a_fisheye_in_the_hand_tells_as_much_as_a_pinhole() {
     let (calibration, report) = fit(scene);
     assert_eq!(refused(&report), [], "{:?}", report.scene);
     let [law, gain, time] = deviations(&calibration);
-    assert!(law < CURVE && gain < CURVE && time < 3e-3, "{law} {gain} {time}");
+    // It looks half as far again off its axis, where fewer surfaces are seen.
+    assert!(law < CURVE && gain < 1.5 * CURVE && time < 3e-3, "{law} {gain} {time}");
     let angle = calibration.terms.angle.as_ref().unwrap();
     assert!((angle.exponent - 1.0).abs() < 0.1, "{}", angle.exponent);
 }
@@ -43,5 +44,9 @@ fn a_table_of_rays_does_for_a_camera_that_stands_and_not_for_one_that_moves() {
     );
     let stands = vec![pose([0.0; 3], [0.0; 3]); 4];
     let scene = pushed(&table, &stands, CameraMotion::Still).unwrap();
-    assert!(scene.motion == MotionFinding::Still && scene.observations.len() > 1000);
+    let same = pushed(&fisheye, &stands, CameraMotion::Still).unwrap();
+    let (found, expected) = (scene.observations.len(), same.observations.len());
+    assert!(scene.motion == MotionFinding::Still && expected > 100, "{expected}");
+    // The same rays but for their rounding.
+    assert!(found.abs_diff(expected) * 100 <= expected, "{found} {expected}");
 }
