@@ -47,6 +47,6 @@ fn a_table_of_rays_does_for_a_camera_that_stands_and_not_for_one_that_moves() {
     let same = pushed(&fisheye, &stands, CameraMotion::Still).unwrap();
     let (found, expected) = (scene.observations.len(), same.observations.len());
     assert!(scene.motion == MotionFinding::Still && expected > 100, "{expected}");
-    // The same rays but for their rounding.
-    assert!(found.abs_diff(expected) * 100 <= expected, "{found} {expected}");
+    // Followed through any pinhole, which bends some of the facets.
+    assert!(found * 2 > expected, "{found} {expected}");
 }

@@ -149,7 +149,9 @@ impl SceneSweep {
     fn lens_of(&self, shape: Shape) -> Option<Lens> {
         let [height, width] = [shape.height, shape.width].map(|pixels| pixels as f64);
         let any = Intrinsics { fx: width, fy: width, cx: 0.5 * (width - 1.0), cy: 0.5 * (height - 1.0) };
-        self.lens.clone().or(self.path.is_still().then_some(Lens::Pinhole(any)))
+        let still = self.path.is_still();
+        let own = self.lens.clone().filter(|lens| lens.can_project() || !still);
+        own.or(still.then_some(Lens::Pinhole(any)))
     }
 
     /// The observations, with distances and angles from the mean surfaces of all frames.
