@@ -44,7 +44,8 @@ fn words(advice: &Advice) -> String {
         Advice::LeaveInputOut => "leave out --keep-input",
         Advice::RecordCalibratedTimes => "record within it, calibrate further, or use --time linear",
         Advice::GiveIntrinsics => {
-            "write {\"intrinsics\": {\"fx\": .., \"fy\": .., \"cx\": .., \"cy\": ..}} (pixels) into its recording.json"
+            "write {\"intrinsics\": {\"fx\": .., \"fy\": .., \"cx\": .., \"cy\": ..}} (pixels) into its recording.json, \
+             or a table of rays into rays.npy (height, width, 3)"
         }
         Advice::GiveModulationFrequency => "give it with --modulation-frequency-hz",
         Advice::TakeOriginal => "take the recording that it was made from",

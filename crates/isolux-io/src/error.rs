@@ -163,6 +163,15 @@ impl RecordingError {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }
 
+    /// A field of `recording.json` that cannot be used, with its value, cut where it is long.
+    pub(crate) fn info(path: &Path, field: &str, found: &serde_json::Value, expected: &str) -> Self {
+        let mut found = found.to_string();
+        if found.chars().count() > 80 {
+            found = found.chars().take(77).collect::<String>() + "...";
+        }
+        Self::Info { path: path.to_owned(), field: field.to_owned(), found, expected: expected.to_owned() }
+    }
+
     pub(crate) fn content(file: &Path, found: impl Into<String>, expected: impl Into<String>) -> Self {
         Self::Content { file: file.to_owned(), found: found.into(), expected: expected.into() }
     }

@@ -17,7 +17,10 @@ pub fn diagnose(source: &mut dyn FrameSource, observer: &dyn Observer) -> Result
     let facts = source.facts();
     let computed = facts.amplitude_from_phase_samples;
     let settings = DiagnoseSettings {
-        principal_point: facts.intrinsics().map(|pinhole| [pinhole.cx, pinhole.cy]),
+        principal_point: facts
+            .lens()
+            .and_then(|lens| lens.principal_point())
+            .map(|[row, column]| [column, row]),
         amplitude_from_phase_samples: computed,
     };
     let mut wanted = Channels::AMPLITUDE

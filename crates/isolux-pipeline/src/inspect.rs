@@ -91,7 +91,7 @@ fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
         phase_convention: info.phase_convention.unwrap_or_default(),
         distance_from_phases: has("phase_samples") && !has(DISTANCE),
         unwrapped_range_m: frequency.filter(|_| unwrapped).map(|frequency| frequency.unambiguous_range_m()),
-        principal_point: facts.intrinsics().map(|pinhole| [pinhole.cx, pinhole.cy]),
+        principal_point: facts.lens().and_then(|lens| lens.principal_point()),
         // With its input, the amplitude is that of the input.
         standardized: info.other.contains_key(PROVENANCE) && !has(VALUES),
     }

@@ -43,6 +43,7 @@ pub fn plan_with(
 ) -> Result<Standardizer, PipelineError> {
     let suspicions = inspect::remark_on(source, observer)?;
     traits.already = Suspicion::already_corrected(&suspicions);
+    source.facts().remark_on_lens(observer);
     let mut choice = *choice;
     let known = choice.noise.is_some() || calibration.is_some_and(|c| c.terms.noise.is_some());
     if choice.sigma == SigmaStep::Required && !known && traits.channels.contains(Channels::AMPLITUDE) {

@@ -6,6 +6,7 @@ use isolux::Advice;
 use isolux::calibrate::AmbientUnknown;
 use isolux::inspect::Suspicion;
 use isolux::standardize::Note;
+use isolux_io::recording::UnusedLens;
 
 /// How much a remark matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,22 @@ pub enum Remark {
         recording: String,
         /// What contradicts it.
         suspicion: Suspicion,
+    },
+    /// Fields about the lens of a recording are not used.
+    LensUnused {
+        /// The recording.
+        recording: String,
+        /// The fields, and why.
+        unused: UnusedLens,
+    },
+    /// Pixels that the lens of a recording gives no ray.
+    PixelsWithoutRay {
+        /// The recording.
+        recording: String,
+        /// Their number.
+        pixels: usize,
+        /// Number of all pixels.
+        of: usize,
     },
     /// The noise of the amplitude had to be taken from neighbouring pixels.
     NoiseFromNeighbours {
@@ -64,10 +81,12 @@ impl Remark {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Plan(note) if note.is_warning() => Severity::Warning,
-            Self::Plan(_) | Self::NoiseFromNeighbours { .. } | Self::AmbientLightUnknown { .. } => {
-                Severity::Note
-            }
+            Self::Plan(_)
+            | Self::PixelsWithoutRay { .. }
+            | Self::NoiseFromNeighbours { .. }
+            | Self::AmbientLightUnknown { .. } => Severity::Note,
             Self::Suspicion { .. }
+            | Self::LensUnused { .. }
             | Self::SceneMoved { .. }
             | Self::CamerasDiffer { .. }
             | Self::FrequenciesDiffer => Severity::Warning,
@@ -91,6 +110,14 @@ impl fmt::Display for Remark {
         match self {
             Self::Plan(note) => note.fmt(f),
             Self::Suspicion { recording, suspicion } => write!(f, "`{recording}`: {suspicion}"),
+            Self::LensUnused { recording, unused } => write!(
+                f,
+                "`{recording}`: {unused}; without them, distances and angles are wrong towards the edges of the image"
+            ),
+            Self::PixelsWithoutRay { recording, pixels, of } => write!(
+                f,
+                "`{recording}`: {pixels} of {of} pixels have no ray in its lens: no angle, and no distance from a depth"
+            ),
             Self::NoiseFromNeighbours { recording } => write!(
                 f,
                 "`{recording}`: no two consecutive frames share an integration time: the noise is taken from \

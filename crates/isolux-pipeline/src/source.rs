@@ -1,12 +1,15 @@
 //! Where frames come from: a recording, the simulated camera, or memory.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use isolux::{Channels, Frame, Intrinsics, Plane, RecordingTraits, Shape};
-use isolux_io::recording::{ChannelInfo, Storage};
+use isolux::{Channels, Frame, Lens, Plane, RayTable, RecordingTraits, Shape};
+use isolux_io::recording::{ChannelInfo, LensDescription, Storage};
 use isolux_io::{Recording, RecordingInfo};
 
 use crate::error::PipelineError;
+use crate::observer::Observer;
+use crate::remark::Remark;
 
 /// What is known about the frames before the first is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +26,8 @@ pub struct SourceFacts {
     pub amplitude_from_phase_samples: bool,
     /// Everything else that is known of the camera and its settings.
     pub info: RecordingInfo,
+    /// The direction of each pixel, where a table of them is known.
+    pub rays: Option<Arc<RayTable>>,
 }
 
 impl SourceFacts {
@@ -36,13 +41,33 @@ impl SourceFacts {
             frame_count: None,
             amplitude_from_phase_samples: false,
             info: RecordingInfo::default(),
+            rays: None,
         }
     }
 
-    /// Pinhole intrinsics of the camera.
+    /// The lens of the camera.
     #[must_use]
-    pub fn intrinsics(&self) -> Option<Intrinsics> {
-        self.info.intrinsics.as_ref().map(|intrinsics| intrinsics.pinhole)
+    pub fn lens(&self) -> Option<Lens> {
+        self.lens_description().lens
+    }
+
+    /// The lens of the camera, and what was said of it that is not used.
+    #[must_use]
+    pub fn lens_description(&self) -> LensDescription {
+        isolux_io::recording::lens_of(self.rays.as_ref(), &self.info, self.shape)
+    }
+
+    /// What the user should know of the lens.
+    pub(crate) fn remark_on_lens(&self, observer: &dyn Observer) {
+        let LensDescription { lens, unused } = self.lens_description();
+        if let Some(unused) = unused {
+            observer.remark(Remark::LensUnused { recording: self.name.clone(), unused });
+        }
+        let pixels = lens.map_or(0, |lens| lens.pixel_rays(self.shape).blind_pixels());
+        if pixels > 0 {
+            let (recording, of) = (self.name.clone(), self.shape.pixels());
+            observer.remark(Remark::PixelsWithoutRay { recording, pixels, of });
+        }
     }
 
     /// What a plan must know about the frames.
@@ -50,7 +75,7 @@ impl SourceFacts {
     pub fn traits(&self) -> RecordingTraits {
         RecordingTraits {
             shape: Some(self.shape),
-            intrinsics: self.intrinsics(),
+            lens: self.lens(),
             modulation_frequency_hz: self.info.modulation_frequency_hz.map(|frequency| frequency.hz()),
             camera: self.info.camera.clone(),
             ..self.available.into()
@@ -120,6 +145,7 @@ impl FrameSource for dyn Recording + '_ {
             frame_count: metadata.frame_count,
             amplitude_from_phase_samples: metadata.channels.iter().any(computed),
             info: metadata.info.clone(),
+            rays: metadata.rays.clone(),
         }
     }
 

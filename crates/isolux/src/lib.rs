@@ -75,8 +75,8 @@ pub use calibration::{Calibration, Reference};
 pub use choice::Choice;
 pub use denoise::DenoiseRule;
 pub use frame::{
-    Channels, Frame, IntegrationTime, Intrinsics, PhaseConvention, PixelFlags, Plane, Shape, ShapeError,
-    Window, phase,
+    Channels, Distortion, Frame, IntegrationTime, Intrinsics, Lens, LensError, PhaseConvention, PixelFlags,
+    PixelRays, Plane, RayTable, Shape, ShapeError, SpinningLidar, Window, phase,
 };
 pub use numerics::statistics;
 pub use specular::SpecularRule;

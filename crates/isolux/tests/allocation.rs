@@ -154,7 +154,7 @@ fn a_stream_tells_the_bytes_that_it_holds() {
     let frame = frame(shape, 900, true);
     let traits = RecordingTraits {
         shape: Some(shape),
-        intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
+        lens: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }.into()),
         ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     for rule in DenoiseRule::ALL {
@@ -183,7 +183,7 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
     let intrinsics = Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 };
     let traits = RecordingTraits {
         shape: Some(shape),
-        intrinsics: Some(intrinsics),
+        lens: Some(intrinsics.into()),
         ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     let profile = Profile {

@@ -3,7 +3,7 @@
 use isolux::Channels;
 use isolux::inspect::Suspicion;
 use isolux_io::Metadata;
-use isolux_io::recording::Storage;
+use isolux_io::recording::{LensDescription, Storage};
 use isolux_pipeline::inspect;
 use isolux_pipeline::overview::{Overview, Spread, overview};
 use serde::Serialize;
@@ -23,6 +23,7 @@ struct Report {
     frames: usize,
     height: usize,
     width: usize,
+    lens: Option<String>,
     channels: Vec<Channel>,
     #[serde(flatten)]
     overview: Overview,
@@ -50,6 +51,7 @@ pub(crate) fn run(args: &InfoArgs) -> Outcome {
         frames: metadata.require_frame_count()?,
         height: metadata.shape.height,
         width: metadata.shape.width,
+        lens: lens(metadata),
         channels: metadata.channels.iter().map(channel).collect(),
         advice: possible(metadata, &overview),
         overview,
@@ -66,6 +68,19 @@ fn channel(channel: &isolux_io::recording::ChannelInfo) -> Channel {
     };
     let (name, frame_dims) = (channel.name.clone(), channel.frame_dims.clone());
     Channel { name, element: channel.element.name(), frame_dims, storage }
+}
+
+/// The lens in words, with what of it is not used.
+fn lens(metadata: &Metadata) -> Option<String> {
+    let LensDescription { lens, unused } = metadata.lens();
+    let seen = lens.map(|lens| {
+        let (blind, of) = (lens.pixel_rays(metadata.shape).blind_pixels(), metadata.shape.pixels());
+        let source = if metadata.rays.is_some() { " (rays.npy)" } else { "" };
+        let blind = if blind > 0 { format!(", {blind} of {of} pixels without a ray") } else { String::new() };
+        format!("{lens}{source}{blind}")
+    });
+    let words: Vec<String> = seen.into_iter().chain(unused.map(|unused| unused.to_string())).collect();
+    (!words.is_empty()).then(|| words.join("; "))
 }
 
 /// What can be done with the recording, and what it lacks.
@@ -103,6 +118,7 @@ fn describe(report: &Report) -> String {
         format!("camera     {}", report.camera.as_deref().unwrap_or("(not named)")),
         format!("frames     {} of {}×{} (height×width)", report.frames, report.height, report.width),
     ];
+    lines.extend(report.lens.iter().map(|lens| format!("lens       {lens}")));
     let dims = |dims: &[usize]| dims.iter().map(usize::to_string).collect::<Vec<_>>().join("×");
     let rows: Vec<Vec<String>> = report
         .channels

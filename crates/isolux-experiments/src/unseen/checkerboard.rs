@@ -80,7 +80,7 @@ pub fn spreads(frames: &[Frame], protocol: &Protocol) -> Result<Vec<Spread>, Exp
         let calibration = calibrate_without(frames, protocol, fold)?;
         let traits = RecordingTraits {
             shape: frames.first().map(Frame::shape),
-            intrinsics: Some(protocol.intrinsics),
+            lens: Some(protocol.intrinsics.into()),
             ..(Channels::AMPLITUDE | Channels::DISTANCE).into()
         };
         let mut chains = Vec::new();

@@ -57,7 +57,7 @@ pub fn figures(
 /// White squares of a board at all distances, tilts and places, in frames that were not fitted on.
 fn checkerboard(recording: &mut dyn FrameSource, _: &dyn Observer) -> Result<Vec<Figure>, ExperimentError> {
     let facts = recording.facts();
-    let Some(intrinsics) = facts.intrinsics() else {
+    let Some(intrinsics) = facts.info.intrinsics.as_ref().map(|recorded| recorded.pinhole) else {
         return Err(ExperimentError::NoIntrinsics { recording: facts.name });
     };
     let wanted = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;

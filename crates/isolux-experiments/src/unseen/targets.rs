@@ -70,7 +70,7 @@ pub fn patches(seed: u64, calibration: &Calibration, step: usize) -> Result<Patc
     let simulation = Simulation::new(CameraModel::random(seed), Scene::builtin(PATCHES)?, seed + 1000)?;
     let traits = RecordingTraits {
         shape: Some(simulation.shape()),
-        intrinsics: Some(simulation.model().intrinsics),
+        lens: Some(simulation.model().intrinsics.into()),
         ..(Channels::AMPLITUDE | Channels::DISTANCE | Channels::INTEGRATION_TIME).into()
     };
     let textbook = Choice::textbook(traits.channels);

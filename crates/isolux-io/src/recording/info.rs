@@ -12,6 +12,7 @@ use serde_json::{Map, Value};
 use super::codes::Codes;
 use super::distance_unit::DistanceUnit;
 use super::frequency::ModulationFrequency;
+use super::lens::{self, BadLens, LensDescription};
 use crate::error::RecordingError;
 
 /// More than any description of a recording takes; a larger file is something else.
@@ -79,7 +80,7 @@ pub struct RecordingInfo {
     /// Order and sign of the bins; the paper's where it is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase_convention: Option<PhaseConvention>,
-    /// Pinhole intrinsics.
+    /// Intrinsics of a camera; those of a lidar, beams, stay among the other fields. [`Self::lens`] reads both.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub intrinsics: Option<RecordedIntrinsics>,
     /// Every other field, kept as it is.
@@ -111,6 +112,17 @@ impl RecordingInfo {
         Self::from_json(&bytes, path)
     }
 
+    /// The lens that the fields describe; nothing where they make none. A table of rays comes before it.
+    #[must_use]
+    pub fn lens(&self) -> LensDescription {
+        self.read_lens().unwrap_or_default()
+    }
+
+    fn read_lens(&self) -> Result<LensDescription, BadLens> {
+        let intrinsics = self.intrinsics.as_ref();
+        lens::describe(intrinsics.map(|intrinsics| (intrinsics.pinhole, &intrinsics.other)), &self.other)
+    }
+
     /// Parses the bytes of a `recording.json`. `path` is for messages.
     ///
     /// # Errors
@@ -136,7 +148,9 @@ impl RecordingInfo {
             intrinsics: reader.take_intrinsics()?,
             other: Map::new(),
         };
-        Ok(Self { other: fields, ..info })
+        let info = Self { other: fields, ..info };
+        info.read_lens().map_err(|bad| RecordingError::info(path, &bad.field, &bad.found, &bad.expected))?;
+        Ok(info)
     }
 
     /// The text of the file: fields in a fixed order, two spaces of indentation, a line feed at the end.
@@ -154,16 +168,7 @@ struct Fields<'a> {
 
 impl Fields<'_> {
     fn error(&self, field: &str, found: &Value, expected: &str) -> RecordingError {
-        let mut found = found.to_string();
-        if found.chars().count() > 80 {
-            found = found.chars().take(77).collect::<String>() + "...";
-        }
-        RecordingError::Info {
-            path: self.path.to_owned(),
-            field: field.to_owned(),
-            found,
-            expected: expected.to_owned(),
-        }
+        RecordingError::info(self.path, field, found, expected)
     }
 
     /// The field, or `None` where it is absent or null.
@@ -218,6 +223,11 @@ impl Fields<'_> {
         let expected = "{fx, fy, cx, cy} in pixels, fx and fy positive";
         let Some(value) = self.fields.remove("intrinsics") else { return Ok(None) };
         if value.is_null() {
+            return Ok(None);
+        }
+        if value.as_object().is_some_and(lens::is_beams) {
+            // No pinhole: what they describe is found where they stand.
+            self.fields.insert("intrinsics".to_owned(), value);
             return Ok(None);
         }
         let pinhole = Intrinsics::deserialize(&value).ok().filter(Intrinsics::is_usable);

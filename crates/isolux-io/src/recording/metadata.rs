@@ -1,11 +1,13 @@
 //! What is known of a recording before its first frame is read.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use isolux::{Channels, Shape};
+use isolux::{Channels, Lens, RayTable, Shape};
 
 use super::element::ElementType;
 use super::info::RecordingInfo;
+use super::lens::{LensDescription, UnusedLens, UnusedReason};
 use crate::error::{RecordingError, listing};
 
 /// What a recording holds.
@@ -26,6 +28,8 @@ pub struct Metadata {
     /// What is known besides the channels (of the native format, `recording.json`); all fields empty where
     /// nothing is.
     pub info: RecordingInfo,
+    /// The direction of each pixel, where the recording holds a table of them (of the native format, `rays.npy`).
+    pub rays: Option<Arc<RayTable>>,
 }
 
 /// In which order the frames of a recording can be read.
@@ -66,6 +70,27 @@ pub enum Storage {
     FromPhaseSamples,
 }
 
+/// The lens of images of `shape`: a table of `rays` where there is one, otherwise what `info` describes and the shape
+/// allows.
+#[must_use]
+pub fn lens_of(rays: Option<&Arc<RayTable>>, info: &RecordingInfo, shape: Shape) -> LensDescription {
+    if let Some(rays) = rays {
+        return LensDescription { lens: Some(Lens::Rays(Arc::clone(rays))), unused: None };
+    }
+    let described = info.lens();
+    match &described.lens {
+        Some(lens @ Lens::Spinning(_)) => match lens.check_shape(shape) {
+            Ok(()) => described,
+            Err(error) => {
+                let fields = "beam_altitude_angles".to_owned();
+                let unused = UnusedLens { fields, reason: UnusedReason::Lens(error) };
+                LensDescription { lens: None, unused: Some(unused) }
+            }
+        },
+        _ => described,
+    }
+}
+
 impl ChannelInfo {
     /// Bytes of one frame.
     #[must_use]
@@ -81,6 +106,12 @@ impl ChannelInfo {
 }
 
 impl Metadata {
+    /// The lens: the table of rays where there is one, otherwise what [`Self::info`] describes and the images allow.
+    #[must_use]
+    pub fn lens(&self) -> LensDescription {
+        lens_of(self.rays.as_ref(), &self.info, self.shape)
+    }
+
     /// The number of frames, for work that must know it before the first frame is read.
     ///
     /// # Errors

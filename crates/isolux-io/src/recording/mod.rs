@@ -5,7 +5,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `element`, `codes`, `distance_unit` | number types; values that are no measurements; metres per unit |
-//! | `frequency` | one modulation frequency or two |
+//! | `frequency`, `lens` | one modulation frequency or two; the lens in `recording.json` |
 //! | `info`, `metadata` | `recording.json`; what is known of a recording |
 //! | `phase_layout`, `channels` | the forms of phase samples; the channels with a meaning: name, dimensions, flag |
 //! | `source` | [`ChannelSource`]: what a format has to deliver |
@@ -26,6 +26,7 @@ mod distance_unit;
 mod element;
 mod frequency;
 mod info;
+mod lens;
 mod metadata;
 mod native;
 mod npy;
@@ -41,7 +42,8 @@ pub use distance_unit::DistanceUnit;
 pub use element::{ByteOrder, Element, ElementType, Number};
 pub use frequency::ModulationFrequency;
 pub use info::{DistanceKind, RecordedIntrinsics, RecordingInfo};
-pub use metadata::{Access, ChannelInfo, Metadata, Storage};
+pub use lens::{LensDescription, UnusedLens, UnusedReason};
+pub use metadata::{Access, ChannelInfo, Metadata, Storage, lens_of};
 pub use open::open;
 pub use reading::{Recording, for_each_frame};
 pub use source::{ChannelSource, RawFrame, SourceDescription, StoredChannel};

@@ -1,6 +1,9 @@
 //! What a format has to deliver: its channels as they are stored, frame by frame.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+
+use isolux::RayTable;
 
 use super::element::{self, ByteOrder, ElementType, Number};
 use super::info::RecordingInfo;
@@ -18,6 +21,12 @@ use crate::error::RecordingError;
 pub trait ChannelSource: Send {
     /// What the source holds. Asked once, before anything else.
     fn describe(&self) -> SourceDescription;
+
+    /// A table of the direction that each pixel looks in, where the source has one. Asked once, after
+    /// [`describe`](Self::describe).
+    fn rays(&self) -> Option<Arc<RayTable>> {
+        None
+    }
 
     /// Makes `index`, counted from 0, the current frame, with `channels` ready for [`raw`](Self::raw): places in
     /// the list of [`SourceDescription::channels`]. `Ok(false)` says that the recording ended before this frame.

@@ -61,7 +61,7 @@ impl Measurer<'_> {
         response: Option<&Response>,
     ) -> Result<TargetWindows, PipelineError> {
         let facts = source.facts();
-        let mut sweep = TargetSweep::new(self.introduce(source)?, self.settings, facts.intrinsics());
+        let mut sweep = TargetSweep::new(self.introduce(source)?, self.settings, facts.lens());
         let mut linear = Linear::new(&facts, response);
         if linear.is_possible() {
             sweep = sweep.of_linear_frames();
@@ -87,15 +87,16 @@ impl Measurer<'_> {
             scout.push(frame);
             Ok(())
         })?;
-        let mut sweep = SceneSweep::new(name, self.settings, facts.intrinsics(), scout.verdict());
+        let mut sweep = SceneSweep::new(name, self.settings, facts.lens(), scout.verdict());
         self.each(source, Work::Scene, Channels::POSE | besides, |frame| sweep.push(linear.frame(frame)?))?;
         Ok(sweep.finish())
     }
 
-    /// Notes the camera of a recording, and what contradicts its description; its name.
+    /// Notes the camera of a recording, what is to be said of its lens, and what contradicts its description; its name.
     fn introduce(&mut self, source: &mut dyn FrameSource) -> Result<String, PipelineError> {
         inspect::remark_on(source, self.observer)?;
         let facts = source.facts();
+        facts.remark_on_lens(self.observer);
         self.cameras.extend(facts.info.camera);
         Ok(facts.name)
     }

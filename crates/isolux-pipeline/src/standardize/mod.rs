@@ -57,6 +57,7 @@ pub fn standardize(
         frame_count: options.brackets.map_or(facts.frame_count, |brackets| Some(brackets.count())),
         sigma: standardizer.predicts_sigma(),
         kept: kept.clone(),
+        rays: facts.rays.clone(),
     })?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let chain = frames.as_ref().unwrap_or(standardizer);

@@ -1,8 +1,9 @@
 //! Where standardized frames go.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use isolux::{Shape, Standardized};
+use isolux::{RayTable, Shape, Standardized};
 use isolux_io::recording::ChannelInfo;
 use isolux_io::{ChannelSpec, ElementType, RecordingInfo, RecordingWriter};
 
@@ -28,6 +29,8 @@ pub struct OutputFormat {
     pub sigma: bool,
     /// Channels of the source that are copied verbatim.
     pub kept: Vec<ChannelInfo>,
+    /// The direction of each pixel, where a table of them is all that is known of the lens.
+    pub rays: Option<Arc<RayTable>>,
 }
 
 /// One frame of the result.
@@ -88,7 +91,10 @@ impl FrameSink for NativeSink {
         }
         channels.extend(format.kept.iter().map(ChannelSpec::copy_of));
         let kept = format.kept.iter().map(|channel| channel.name.clone()).collect();
-        let writer = RecordingWriter::create(&self.path, format.frame_count, channels, self.overwrite)?;
+        let mut writer = RecordingWriter::create(&self.path, format.frame_count, channels, self.overwrite)?;
+        if let Some(rays) = &format.rays {
+            writer.write_rays(rays)?;
+        }
         self.open = Some((writer, kept));
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Why a frame cannot be measured, and why recordings do not fit together.
 
 use crate::advice::Advice;
-use crate::frame::{Shape, ShapeError};
+use crate::frame::{LensError, Shape, ShapeError};
 use crate::standardize::StandardizeError;
 
 /// Why a frame cannot be measured.
@@ -64,6 +64,20 @@ pub enum MeasureError {
          computed from them"
     )]
     NoIntrinsics,
+    /// A lens that does not fit the frames.
+    #[error("frame {frame}: {source}")]
+    Lens {
+        /// Frame number, from 0.
+        frame: usize,
+        /// What does not fit.
+        source: LensError,
+    },
+    /// A recording of a moving camera of whose lens only a table of rays is known.
+    #[error(
+        "a table of rays found, but the surfaces that a moving camera sees are followed from frame to frame through its \
+         lens: intrinsics or beam angles expected"
+    )]
+    OnlyRays,
     /// A frame that the response cannot make linear.
     #[error("linear amplitude: {0}")]
     Linear(#[from] StandardizeError),
@@ -74,7 +88,7 @@ impl MeasureError {
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
-            Self::NoIntrinsics => Some(Advice::GiveIntrinsics),
+            Self::NoIntrinsics | Self::OnlyRays => Some(Advice::GiveIntrinsics),
             _ => None,
         }
     }

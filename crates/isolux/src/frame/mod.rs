@@ -4,6 +4,7 @@ mod channels;
 mod flags;
 mod geometry;
 mod integration_time;
+mod lens;
 pub mod phase;
 mod plane;
 
@@ -11,6 +12,7 @@ pub use channels::Channels;
 pub use flags::PixelFlags;
 pub use geometry::Intrinsics;
 pub use integration_time::IntegrationTime;
+pub use lens::{Distortion, Lens, LensError, PixelRays, RayTable, SpinningLidar};
 pub use phase::PhaseConvention;
 pub use plane::{Plane, Shape, ShapeError, Window};
 

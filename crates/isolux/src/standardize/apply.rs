@@ -81,7 +81,8 @@ pub(super) fn apply(
         Some(planned) => {
             let surfaces = prepared.mean(frame.shape())?.map(|mean| &mean.distance_m).or(own_distance_m);
             let surfaces = surfaces.ok_or(StandardizeError::DistanceMissing)?;
-            Some(incidence.cosines(frame, surfaces, &planned.intrinsics))
+            angle::expect_format(planned, frame.shape())?;
+            Some(incidence.cosines(frame, surfaces, &planned.rays))
         }
         None => None,
     };

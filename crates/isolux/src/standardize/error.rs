@@ -47,6 +47,14 @@ pub enum StandardizeError {
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
+    /// The rays were computed for frames of another shape.
+    #[error("a frame of {found} found, {expected} expected: the lens was given for that format")]
+    LensFormat {
+        /// Shape of the frame.
+        found: Shape,
+        /// Shape that the rays were computed for.
+        expected: Shape,
+    },
 }
 
 impl From<DenoiseError> for StandardizeError {

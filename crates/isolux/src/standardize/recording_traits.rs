@@ -1,7 +1,7 @@
 //! What a plan must know about the recording.
 
 use super::AmbientLight;
-use crate::frame::{Channels, Intrinsics, Shape};
+use crate::frame::{Channels, Lens, Shape};
 
 /// Facts about a recording that decide which steps are possible.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,8 +10,8 @@ pub struct RecordingTraits {
     pub channels: Channels,
     /// Height and width of its frames in pixels, where they are known before the first frame.
     pub shape: Option<Shape>,
-    /// Its intrinsics, pixels; the angle step needs them.
-    pub intrinsics: Option<Intrinsics>,
+    /// The lens of its camera; the angle step needs it and, unless it is a pinhole, the shape.
+    pub lens: Option<Lens>,
     /// Its modulation frequency, Hz, from which the prediction of sigma computes the noise of the distances.
     /// `None`: the noise is estimated from each frame.
     pub modulation_frequency_hz: Option<f64>,
@@ -39,7 +39,7 @@ impl From<Channels> for RecordingTraits {
         Self {
             channels,
             shape: None,
-            intrinsics: None,
+            lens: None,
             modulation_frequency_hz: None,
             ambient_light: None,
             camera: None,

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::advice::{Advice, RecordingKind};
-use crate::frame::Shape;
+use crate::frame::{LensError, Shape};
 use crate::step_names::{DistanceStep, TimeStep};
 
 /// One step of the chain, as it is recorded with the output.
@@ -151,7 +151,7 @@ impl fmt::Display for Note {
 }
 
 /// Why a choice cannot be carried out.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// A term asked for by name is not in the calibration.
@@ -195,8 +195,16 @@ pub enum PlanError {
         expected: Shape,
     },
     /// The angle was asked for, but the recording has no intrinsics, from which the rays are computed.
-    #[error("`angle` was asked for, but the recording has no intrinsics")]
+    #[error("`angle` was asked for, but the recording has no intrinsics and no rays")]
     IntrinsicsMissing,
+    /// The angle was asked for with a lens whose rays depend on the shape of the frames, which was not given.
+    #[error(
+        "`angle` was asked for, but the shape of the frames, which the rays of their lens depend on, is unknown"
+    )]
+    LensWithoutShape,
+    /// The lens does not fit the frames.
+    #[error("`angle` was asked for, but the lens does not fit the frames: {0}")]
+    Lens(#[from] LensError),
     /// The calibration's own values are impossible.
     #[error("calibration: {0}")]
     Calibration(#[from] crate::terms::ParameterError),
@@ -211,10 +219,11 @@ impl PlanError {
                 Some(Advice::CalibrateFrom(*fit_from))
             }
             Self::NoiseUnknown => Some(Advice::GiveNoise),
-            Self::IntrinsicsMissing => Some(Advice::GiveIntrinsics),
+            Self::IntrinsicsMissing | Self::Lens(_) => Some(Advice::GiveIntrinsics),
             Self::AmbientLightUnknown
             | Self::ChannelMissing { .. }
             | Self::ProfileFormat { .. }
+            | Self::LensWithoutShape
             | Self::Calibration(_) => None,
         }
     }

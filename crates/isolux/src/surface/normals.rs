@@ -5,9 +5,11 @@
 //! window holds 9×9 samples; where the distances are noisy, they are farther apart. A window reaches across edges
 //! of depth, so the fit is robust: it starts in the window's inner half with what a surface through the middle
 //! pixel could hold at all, and closes in on the plane that the majority lies on (Tukey's biweight, the cutoff at
-//! three times the weighted root mean square, at best halved from round to round).
+//! three times the weighted root mean square, at best halved from round to round). `neighbourhood` lays out the rays of
+//! any lens like that.
 
-use crate::frame::{Intrinsics, Shape};
+use super::neighbourhood::{Flat, Layout, Turned};
+use crate::frame::{PixelRays, Shape};
 use crate::numerics::plane_fit::{LocalPlane, PlaneMoments};
 use crate::numerics::robust::biweight;
 
@@ -23,8 +25,6 @@ const WIDEST_STEP: i64 = 5;
 const LARGEST_ERROR: f64 = 0.02;
 /// Samples to either side with which a fit starts: the window's inner half, which an edge reaches less often.
 const NEAR_REACH: i64 = 2;
-/// Tangent of the steepest surface that a fit starts with: 68°.
-const STEEPEST: f64 = 2.5;
 /// Standard deviations of a pixel's distance, before it was denoised, that a fit starts with besides.
 const NOISE_MARGIN: f64 = 1.0;
 /// Larger relative deviations do not widen the start: they would let in everything.
@@ -42,50 +42,44 @@ const LEAST_SPREAD: f64 = 0.02;
 /// What the fits of one frame share.
 pub(super) struct Field<'a> {
     pub(super) shape: Shape,
-    pub(super) intrinsics: &'a Intrinsics,
-    /// 1/z, 1/m; NaN where there is no distance.
+    pub(super) rays: &'a PixelRays,
+    /// Inverse depth of each pixel, 1/m, in the axes that it is laid out in; NaN where there is no distance.
     pub(super) inverse_depth: &'a [f32],
 }
 
 impl Field<'_> {
     /// Cosine of the angle of incidence at a pixel; `noise`: relative standard deviation of its distance.
     pub(super) fn cosine(&self, index: usize, noise: f64) -> Option<f64> {
-        let (row, column) = self.shape.place(index);
-        let step = self.step(noise);
-        let plane = self.plane(row, column, step, noise)?;
-        let [x, y, _] = self.intrinsics.ray(row as f64, column as f64);
-        let along = plane.middle - plane.along_x * x - plane.along_y * y;
-        let length = (plane.along_x * plane.along_x + plane.along_y * plane.along_y + along * along).sqrt();
-        let cosine = plane.middle / (length * radial_per_depth(self.intrinsics, (row, column)));
+        let pixel = self.shape.place(index);
+        match self.rays {
+            PixelRays::Pinhole(intrinsics) => self.cosine_in(&Flat { intrinsics, pixel }, pixel, noise),
+            PixelRays::Table(table) => self.cosine_in(&Turned::new(table, pixel)?, pixel, noise),
+        }
+    }
+
+    fn cosine_in<L: Layout>(&self, layout: &L, pixel: (usize, usize), noise: f64) -> Option<f64> {
+        let step = step(layout.focal_px(), noise);
+        let plane = |&steepest: &f64| self.plane(layout, pixel, step, noise, steepest);
+        let cosine = layout.cosine(L::STEEPEST.iter().find_map(plane)?);
         (cosine > 0.0).then(|| cosine.min(1.0))
     }
 
-    /// Pixels from sample to sample: the slant of N pixels within a half width of R has the standard error
-    /// `σ/d · √3 f / (R √N)`.
-    fn step(&self, noise: f64) -> i64 {
-        let focal = self.intrinsics.fx.min(self.intrinsics.fy);
-        let narrowest = ((NARROWEST * focal / REACH as f64).round() as i64).clamp(1, 64);
-        let error = |step: i64| {
-            let half = (REACH * step) as f64;
-            noise * 3f64.sqrt() * focal / (half * (2.0 * half + 1.0))
-        };
-        let mut step = narrowest;
-        while step < WIDEST_STEP && error(step) > LARGEST_ERROR {
-            step += 1;
-        }
-        step
-    }
-
     /// `1/z = middle + along_x Δx + along_y Δy` around a pixel.
-    fn plane(&self, row: usize, column: usize, step: i64, noise: f64) -> Option<LocalPlane> {
+    fn plane<L: Layout>(
+        &self,
+        layout: &L,
+        (row, column): (usize, usize),
+        step: i64,
+        noise: f64,
+        steepest: f64,
+    ) -> Option<LocalPlane> {
         let middle = f64::from(self.inverse_depth[row * self.shape.width + column]);
-        let focal = self.intrinsics.fx.min(self.intrinsics.fy);
-        let near = STEEPEST * (NEAR_REACH * step) as f64 / focal;
+        let near = steepest * (NEAR_REACH * step) as f64 / layout.focal_px();
         let mut cutoff = middle * (near + NOISE_MARGIN * noise.min(LARGEST_NOISE));
         let mut plane = LocalPlane::level(middle);
         for round in 0..ROUNDS {
             let reach = if round < NEAR_ROUNDS { NEAR_REACH } else { REACH };
-            let samples = self.samples((row, column), reach, step, plane, cutoff);
+            let samples = self.samples(layout, (row, column), reach, step, plane, cutoff);
             let before = plane;
             plane = samples.corrected(plane)?;
             let closest = cutoff <= LEAST_CUTOFF * middle * 1.001;
@@ -102,8 +96,9 @@ impl Field<'_> {
     }
 
     /// The samples within `cutoff` of the `known` plane.
-    fn samples(
+    fn samples<L: Layout>(
         &self,
+        layout: &L,
         (row, column): (usize, usize),
         reach: i64,
         step: i64,
@@ -118,14 +113,14 @@ impl Field<'_> {
             if y < 0 || y >= height {
                 continue;
             }
-            let dy = (i * step) as f64 / self.intrinsics.fy;
             for j in -reach..=reach {
                 let x = column as i64 + j * step;
                 if x < 0 || x >= width {
                     continue;
                 }
-                let dx = (j * step) as f64 / self.intrinsics.fx;
-                let value = f64::from(self.inverse_depth[(y * width + x) as usize]);
+                let index = (y * width + x) as usize;
+                let inverse = f64::from(self.inverse_depth[index]);
+                let [dx, dy, value] = layout.place(i * step, j * step, index, inverse);
                 let residual = value - known.middle - known.along_x * dx - known.along_y * dy;
                 let share = residual * residual * inverse_square;
                 // False for NaN.
@@ -168,10 +163,19 @@ impl Samples {
     }
 }
 
-/// Radial distance per metre of depth at a pixel.
-pub(super) fn radial_per_depth(intrinsics: &Intrinsics, (row, column): (usize, usize)) -> f64 {
-    let [x, y, z] = intrinsics.ray(row as f64, column as f64);
-    (x * x + y * y + z * z).sqrt()
+/// Pixels from sample to sample: the slant of N pixels within a half width of R has the standard error
+/// `σ/d · √3 f / (R √N)`.
+fn step(focal_px: f64, noise: f64) -> i64 {
+    let narrowest = ((NARROWEST * focal_px / REACH as f64).round() as i64).clamp(1, 64);
+    let error = |step: i64| {
+        let half = (REACH * step) as f64;
+        noise * 3f64.sqrt() * focal_px / (half * (2.0 * half + 1.0))
+    };
+    let mut step = narrowest;
+    while step < WIDEST_STEP && error(step) > LARGEST_ERROR {
+        step += 1;
+    }
+    step
 }
 
 /// Within a thousandth of the slant.

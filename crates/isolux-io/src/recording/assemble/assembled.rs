@@ -33,8 +33,8 @@ impl<S: ChannelSource> Assembled<S> {
     /// contradicts the channels.
     pub fn new(source: S) -> Result<Self, RecordingError> {
         let description = source.describe();
-        let Layout { metadata, places } = check::check(&description)?;
-        let scratch = Scratch::new(&description, &places);
+        let Layout { metadata, places } = check::check(&description, source.rays())?;
+        let scratch = Scratch::new(&description, &places, metadata.lens().lens);
         Ok(Self {
             cursor: Cursor::new(source, description.access, description.frame_count),
             metadata,

@@ -1,15 +1,17 @@
 //! Checks that the channels make one recording, and finds out what can be read from it.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use isolux::{Channels, PhaseConvention, Shape};
+use isolux::{Channels, Lens, PhaseConvention, RayTable, Shape};
 
 use crate::error::{RecordingError, dims_text};
 use crate::recording::channels::{self, FrameDims, Places};
 use crate::recording::element::ElementType;
 use crate::recording::frequency::ModulationFrequency;
 use crate::recording::info::{DistanceKind, RecordingInfo};
-use crate::recording::metadata::{ChannelInfo, Metadata, Storage};
+use crate::recording::lens::LensDescription;
+use crate::recording::metadata::{self, ChannelInfo, Metadata, Storage};
 use crate::recording::phase_layout::PhaseLayout;
 use crate::recording::source::{SourceDescription, StoredChannel};
 
@@ -20,8 +22,11 @@ pub(super) struct Layout {
     pub(super) places: Places,
 }
 
-/// Checks that the channels make one recording.
-pub(super) fn check(description: &SourceDescription) -> Result<Layout, RecordingError> {
+/// Checks that the channels make one recording, and that `rays` are those of its pixels.
+pub(super) fn check(
+    description: &SourceDescription,
+    rays: Option<Arc<RayTable>>,
+) -> Result<Layout, RecordingError> {
     let names = description.channels.iter().map(|channel| channel.name.as_str());
     let shape = shape(description, channels::leading(&description.path, names.clone())?)?;
     let mut stored = Channels::empty();
@@ -34,6 +39,7 @@ pub(super) fn check(description: &SourceDescription) -> Result<Layout, Recording
         stored |= channels::flag(&channel.name);
     }
     check_info(&description.info, &description.info_path, stored)?;
+    check_lens(description, rays.as_ref(), shape, stored)?;
     let phases = description.channels.iter().find(|channel| channel.name == "phase_samples");
     let layout = phases.and_then(|channel| PhaseLayout::of(channel.element, &channel.frame_dims));
     if let Some(layout) = layout {
@@ -50,6 +56,7 @@ pub(super) fn check(description: &SourceDescription) -> Result<Layout, Recording
         channels: list_channels(description, shape, available & !stored),
         available,
         info: description.info.clone(),
+        rays,
     };
     Ok(Layout { metadata, places: Places::of(names) })
 }
@@ -102,11 +109,6 @@ fn check_info(info: &RecordingInfo, path: &Path, stored: Channels) -> Result<(),
             expected: expected.to_owned(),
         })
     };
-    let depth = info.distance_kind == Some(DistanceKind::Z) && stored.contains(Channels::DISTANCE);
-    if depth && info.intrinsics.is_none() {
-        let expected = "{fx, fy, cx, cy}: without them the z distance cannot be made radial";
-        return error("intrinsics", "nothing", expected);
-    }
     if info.integration_time_us.is_some() && stored.contains(Channels::INTEGRATION_TIME) {
         let expected = "either the constant or the channel `integration_time_us`; remove one";
         return error("integration_time_us", "both", expected);
@@ -135,6 +137,47 @@ fn check_phases(info: &RecordingInfo, path: &Path, layout: PhaseLayout) -> Resul
         return error("phase_convention", &format!("the order {order:?}"), expected);
     }
     Ok(())
+}
+
+/// Checks that the lens is one of these images, and that depths can be made distances with it.
+fn check_lens(
+    description: &SourceDescription,
+    rays: Option<&Arc<RayTable>>,
+    shape: Shape,
+    stored: Channels,
+) -> Result<(), RecordingError> {
+    let error = |field: &str, found: String, expected: &str| {
+        Err(RecordingError::Info {
+            path: description.info_path.clone(),
+            field: field.to_owned(),
+            found,
+            expected: expected.to_owned(),
+        })
+    };
+    let info = &description.info;
+    let LensDescription { lens, unused } = metadata::lens_of(rays, info, shape);
+    if let Some(wrong) = lens.as_ref().and_then(|lens| lens.check_shape(shape).err()) {
+        return match lens {
+            Some(Lens::Rays(_)) => {
+                Err(RecordingError::content(&description.path.join("rays"), wrong.found(), wrong.expected()))
+            }
+            _ => error("intrinsics", wrong.found(), &wrong.expected()),
+        };
+    }
+    let depth = info.distance_kind == Some(DistanceKind::Z) && stored.contains(Channels::DISTANCE);
+    match lens {
+        Some(lens) if depth && !lens.has_axis() => {
+            let expected = "\"radial\": a lidar that spins has no axis along which depth is measured";
+            error("distance_kind", "\"z\"".to_owned(), expected)
+        }
+        None if depth => {
+            let found = unused.map_or("nothing".to_owned(), |unused| unused.to_string());
+            let expected =
+                "{fx, fy, cx, cy} or a table of rays: without them the z distance cannot be made radial";
+            error("intrinsics", found, expected)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What frames can carry: what is stored, constant, or computed from the phase samples.
@@ -196,7 +239,7 @@ mod tests {
             info: RecordingInfo::from_json(json.as_bytes(), info_path).unwrap(),
             info_path: info_path.to_owned(),
         };
-        check(&description).map(|layout| layout.metadata)
+        check(&description, None).map(|layout| layout.metadata)
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! From loaded channels to a [`Frame`].
 
-use isolux::{Channels, Frame, PixelFlags, Plane};
+use isolux::{Channels, Frame, Lens, PixelFlags, Plane};
 
 use super::codes;
 use super::distance::DistanceScale;
@@ -21,9 +21,9 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    pub(super) fn new(description: &SourceDescription, places: &Places) -> Self {
+    pub(super) fn new(description: &SourceDescription, places: &Places, lens: Option<Lens>) -> Self {
         let distance = places.get(Channels::DISTANCE).map(|place| description.channels[place].element);
-        let distance_scale = DistanceScale::new(&description.info, distance);
+        let distance_scale = DistanceScale::new(&description.info, distance, lens);
         let frequency = description.info.modulation_frequency_hz;
         let layout = places.get(Channels::PHASE_SAMPLES).and_then(|place| {
             let channel = &description.channels[place];

@@ -6,6 +6,7 @@ mod find;
 mod folder;
 mod gathered;
 mod mapped;
+mod rays;
 mod sequential;
 mod shapes;
 mod source;

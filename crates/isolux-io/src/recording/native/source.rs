@@ -1,10 +1,13 @@
 //! A recording in the native format, as a source of channels.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use isolux::RayTable;
 
 use super::channel::Channel;
 use super::find::find_arrays;
-use super::shapes;
+use super::{rays, shapes};
 use crate::error::RecordingError;
 use crate::recording::info::RecordingInfo;
 use crate::recording::metadata::Access;
@@ -21,20 +24,22 @@ pub(crate) struct NativeSource {
     channels: Vec<Channel>,
     info: RecordingInfo,
     info_path: PathBuf,
+    rays: Option<Arc<RayTable>>,
 }
 
 impl NativeSource {
     /// Opens a folder or an archive: reads the headers, checks that all arrays have the same number of frames,
-    /// reads no values.
+    /// reads no values but those of a table of rays.
     pub(crate) fn open(path: &Path) -> Result<Self, RecordingError> {
-        let (arrays, info_path) = find_arrays(path)?;
+        let (mut arrays, info_path) = find_arrays(path)?;
+        let rays = rays::take(&mut arrays)?;
         let info = RecordingInfo::read_if_present(&info_path)?;
         let frame_count = shapes::check(path, &arrays)?;
         let gathered = arrays.iter().filter(|array| !array.header.is_c_order()).count();
         let batch_bytes = GATHERED_BYTES / gathered.max(1);
         let channels =
             arrays.into_iter().map(|array| array.into_channel(batch_bytes)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { path: path.to_owned(), frame_count, channels, info, info_path })
+        Ok(Self { path: path.to_owned(), frame_count, channels, info, info_path, rays })
     }
 }
 
@@ -49,6 +54,10 @@ impl ChannelSource for NativeSource {
             info: self.info.clone(),
             info_path: self.info_path.clone(),
         }
+    }
+
+    fn rays(&self) -> Option<Arc<RayTable>> {
+        self.rays.clone()
     }
 
     /// Each channel stands where it was read last, so that frames and channels that nobody wants cost nothing, and

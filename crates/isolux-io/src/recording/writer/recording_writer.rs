@@ -4,10 +4,12 @@ use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use isolux::RayTable;
+
 use super::output::Output;
 use super::spec::ChannelSpec;
 use crate::error::{RecordingError, dims_text, listing};
-use crate::recording::element::Element;
+use crate::recording::element::{Element, ElementType};
 use crate::recording::info::RecordingInfo;
 use crate::recording::npy;
 
@@ -38,7 +40,11 @@ pub struct RecordingWriter {
     /// `None` until the end, where it is not known before.
     frame_count: Option<usize>,
     bytes: Vec<u8>,
+    has_rays: bool,
 }
+
+/// Name of the array that is no channel: the rays of all pixels, once for all frames.
+const RAYS: &str = "rays";
 
 #[derive(Debug)]
 struct OpenChannel {
@@ -81,7 +87,7 @@ impl RecordingWriter {
             .into_iter()
             .map(|spec| OpenChannel::create(spec, frame_count, output.staging()))
             .collect::<Result<_, _>>()?;
-        Ok(Self { output, frame_count, channels, bytes: Vec::new() })
+        Ok(Self { output, frame_count, channels, bytes: Vec::new(), has_rays: false })
     }
 
     /// Writes the next frame of `channel`; `values` in C order, of the type that was declared.
@@ -125,6 +131,27 @@ impl RecordingWriter {
         Ok(())
     }
 
+    /// Writes the table of rays, which all frames share, as the array `rays`: (H, W, 3), f64, of unit length.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`] where there is a channel of that name or a table already; [`RecordingError::Io`].
+    pub fn write_rays(&mut self, rays: &RayTable) -> Result<(), RecordingError> {
+        if self.has_rays || self.channels.iter().any(|channel| channel.spec.name == RAYS) {
+            return Err(RecordingError::write(
+                self.output.path(),
+                "two arrays named `rays`",
+                "each name once",
+            ));
+        }
+        let shape = rays.shape();
+        let path = self.output.staging().join(format!("{RAYS}.npy"));
+        let mut bytes = npy::header_bytes(ElementType::F64, &[shape.height, shape.width, 3], 0);
+        rays.unit().iter().for_each(|ray| f64::append_little_endian(ray, &mut bytes));
+        std::fs::write(&path, bytes).map_err(RecordingError::io("write", &path))?;
+        self.has_rays = true;
+        Ok(())
+    }
+
     /// Writes `recording.json` and gives the recording its name. Every channel must be complete.
     ///
     /// # Errors
@@ -145,6 +172,7 @@ impl RecordingWriter {
             let told_before = self.frame_count.is_some();
             names.push(channel.close((!told_before).then_some(frame_count))?);
         }
+        names.extend(self.has_rays.then(|| RAYS.to_owned()));
         self.output.publish(&names, &json)
     }
 

@@ -22,7 +22,7 @@ impl JointInput {
     /// `None` when no recording has an observation.
     pub(super) fn new(settings: &CalibrateSettings, recordings: &[SceneObservations]) -> Option<Self> {
         let first = recordings.iter().find(|recording| !recording.observations.is_empty())?;
-        let places = Places::new(first.shape, first.intrinsics.as_ref());
+        let places = Places::new(first.shape, first.lens.as_ref());
         let times_us = times_us(recordings);
         let mut input = Self {
             observations: Vec::new(),

@@ -9,14 +9,16 @@ use super::view::{LEAST_COSINE, View};
 use crate::calibrate::exposure::{ExposureCurve, ExposureSweep};
 use crate::calibrate::sweep_frames::{SweepFrames, single_time};
 use crate::calibrate::{CalibrateSettings, MeasureError};
-use crate::frame::{Frame, Intrinsics, Shape};
+use crate::frame::{Frame, Intrinsics, Lens, PixelRays, Shape};
 use crate::terms::Source;
 
 /// An ordinary recording, measured frame by frame.
 #[derive(Clone, Debug)]
 pub struct SceneSweep {
     frames: SweepFrames,
-    intrinsics: Option<Intrinsics>,
+    lens: Option<Lens>,
+    /// Of all pixels, as soon as the shape is known.
+    rays: Option<PixelRays>,
     shape: Option<Shape>,
     pub(super) path: Path,
     surfaces: Surfaces,
@@ -52,8 +54,8 @@ pub struct SceneObservations {
     pub source: Source,
     /// Height and width of its frames.
     pub shape: Shape,
-    /// Its pinhole, where it is known.
-    pub intrinsics: Option<Intrinsics>,
+    /// Its lens, where it is known.
+    pub lens: Option<Lens>,
     /// How the camera moved, or why that could not be estimated.
     pub motion: MotionFinding,
     /// Every observation of a surface that was seen more than once; empty when the motion is unknown.
@@ -64,12 +66,12 @@ pub struct SceneObservations {
 
 impl SceneSweep {
     /// Starts a recording; `recording` is its name in errors and in the calibration. A camera that stands still
-    /// needs no intrinsics. [`MotionScout`](super::MotionScout) finds out which `motion` to pass.
+    /// needs no lens. [`MotionScout`](super::MotionScout) finds out which `motion` to pass.
     #[must_use]
     pub fn new(
         recording: impl Into<String>,
         settings: &CalibrateSettings,
-        intrinsics: Option<Intrinsics>,
+        lens: Option<Lens>,
         motion: CameraMotion,
     ) -> Self {
         let recording = recording.into();
@@ -78,7 +80,8 @@ impl SceneSweep {
         Self {
             exposure: may_be_still.then(|| ExposureSweep::new(&recording, settings)),
             frames: SweepFrames::new(recording, settings),
-            intrinsics: intrinsics.filter(Intrinsics::is_usable),
+            lens: lens.filter(Lens::is_usable),
+            rays: None,
             shape: None,
             path: Path::new(motion),
             surfaces: Surfaces::default(),
@@ -89,7 +92,8 @@ impl SceneSweep {
     ///
     /// # Errors
     /// [`MeasureError`] when the frame has no distances, planes of different shapes, or no rigid pose although
-    /// poses were announced; or when a moving camera has no intrinsics.
+    /// poses were announced; or when a moving camera has no lens, one that does not fit its frames, or only a table of
+    /// rays.
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let shape = *self.shape.get_or_insert(frame.shape());
@@ -109,8 +113,19 @@ impl SceneSweep {
         if self.frames.place(time_us).is_none() {
             return Ok(());
         }
-        let intrinsics = self.pinhole(shape).ok_or(MeasureError::NoIntrinsics)?;
-        let Some(view) = View::new(frame, &intrinsics) else { return Ok(()) };
+        let lens = self.lens_of(shape).ok_or(MeasureError::NoIntrinsics)?;
+        if !lens.can_project() && !self.path.is_still() {
+            return Err(MeasureError::OnlyRays);
+        }
+        let rays = match self.rays.take() {
+            Some(rays) => rays,
+            None => {
+                lens.check_shape(shape).map_err(|source| MeasureError::Lens { frame: number, source })?;
+                lens.pixel_rays(shape)
+            }
+        };
+        let rays = self.rays.insert(rays);
+        let Some(view) = View::new(frame, &lens, rays) else { return Ok(()) };
         if let Some(pose) = self.path.next(number, frame, &view, &mut self.surfaces)? {
             self.surfaces.observe(&view, &pose, number as u32);
         }
@@ -127,14 +142,16 @@ impl SceneSweep {
         let source = self.frames.source(if told { self.path.poses.len() } else { 0 });
         let stands = motion == MotionFinding::Still;
         let exposure = self.exposure.filter(|_| stands).map(ExposureSweep::finish);
-        SceneObservations { source, shape, intrinsics: self.intrinsics, motion, observations, exposure }
+        SceneObservations { source, shape, lens: self.lens, motion, observations, exposure }
     }
 
     /// Where the camera stands still, any pinhole will do: every surface stays in its pixel.
-    fn pinhole(&self, shape: Shape) -> Option<Intrinsics> {
+    fn lens_of(&self, shape: Shape) -> Option<Lens> {
         let [height, width] = [shape.height, shape.width].map(|pixels| pixels as f64);
         let any = Intrinsics { fx: width, fy: width, cx: 0.5 * (width - 1.0), cy: 0.5 * (height - 1.0) };
-        self.intrinsics.or(self.path.is_still().then_some(any))
+        let still = self.path.is_still();
+        let own = self.lens.clone().filter(|lens| lens.can_project() || !still);
+        own.or(still.then_some(Lens::Pinhole(any)))
     }
 
     /// The observations, with distances and angles from the mean surfaces of all frames.
@@ -144,11 +161,11 @@ impl SceneSweep {
         let mut seen = vec![0u32; places.len()];
         self.surfaces.sightings.iter().for_each(|sighting| seen[sighting.surface as usize] += 1);
         let again = |sighting: &&Sighting| seen[sighting.surface as usize] > 1;
-        let Some(intrinsics) = self.pinhole(shape) else { return Vec::new() };
+        let Some(rays) = &self.rays else { return Vec::new() };
         let observation = |sighting: &Sighting| {
             let pose = self.path.poses.get(&sighting.frame)?;
             let (point_m, normal) = places[sighting.surface as usize];
-            observation(sighting, pose, shape, &intrinsics, &point_m, &normal)
+            observation(sighting, pose, shape, rays, &point_m, &normal)
         };
         self.surfaces.sightings.iter().filter(again).filter_map(observation).collect()
     }
@@ -159,12 +176,12 @@ fn observation(
     sighting: &Sighting,
     pose: &Rigid,
     shape: Shape,
-    intrinsics: &Intrinsics,
+    rays: &PixelRays,
     point_m: &Vector3<f64>,
     normal: &Vector3<f64>,
 ) -> Option<SceneObservation> {
     let [row, column] = [sighting.pixel as usize / shape.width, sighting.pixel as usize % shape.width];
-    let ray = Vector3::from(intrinsics.ray(row as f64, column as f64)).normalize();
+    let ray = Vector3::from(rays.ray(row, column)).normalize();
     let cosine = normal.dot(&(pose.rotation * ray));
     let distance_m = normal.dot(&(point_m - pose.translation)) / cosine;
     (cosine >= LEAST_COSINE && distance_m > 0.0).then_some(SceneObservation {

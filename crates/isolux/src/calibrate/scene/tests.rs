@@ -7,9 +7,12 @@ use super::*;
 use crate::calibrate::joint::Factor;
 use crate::calibrate::{CalibrateSettings, ExposureFit, FitReport, FitWarning, Measurements};
 use crate::calibration::{Calibration, Reference};
-use crate::frame::{Frame, IntegrationTime, Intrinsics, Shape};
+use crate::frame::{Frame, IntegrationTime, Intrinsics, Lens, Shape};
 use crate::numerics::hash::splitmix64;
 use crate::terms::lut::LutAnswer;
+
+#[path = "lens_tests.rs"]
+mod lenses;
 
 const SHAPE: Shape = Shape { height: 66, width: 88 };
 const PINHOLE: Intrinsics = Intrinsics { fx: 80.0, fy: 80.0, cx: 43.0, cy: 33.0 };
@@ -57,11 +60,16 @@ fn ln_v(row: f64, column: f64) -> f64 {
 
 /// One frame from a pose.
 fn frame(walls: &Walls, pose: &Rigid, time_us: f64, seed: u64) -> Frame {
+    frame_through(&PINHOLE.into(), walls, pose, time_us, seed)
+}
+
+fn frame_through(lens: &Lens, walls: &Walls, pose: &Rigid, time_us: f64, seed: u64) -> Frame {
     let mut frame = Frame::new(SHAPE);
     let mut distances = frame.amplitude.clone();
     for index in 0..SHAPE.pixels() {
         let (row, column) = ((index / SHAPE.width) as f64, (index % SHAPE.width) as f64);
-        let ray = pose.rotation * Vector3::from(PINHOLE.ray(row, column)).normalize();
+        let seen = lens.ray(SHAPE, index / SHAPE.width, index % SHAPE.width).unwrap();
+        let ray = pose.rotation * Vector3::from(seen).normalize();
         let hit = |(number, (normal, offset)): (usize, &(Vector3<f64>, f64))| {
             let distance = (offset - normal.dot(&pose.translation)) / normal.dot(&ray);
             (distance > 0.0).then_some((distance, normal.dot(&ray), number))
@@ -114,7 +122,7 @@ fn settings() -> CalibrateSettings {
 }
 
 fn measure(walls: &Walls, poses: &[Rigid], times_us: &[f64], motion: CameraMotion) -> SceneObservations {
-    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE), motion);
+    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE.into()), motion);
     for (number, pose) in poses.iter().enumerate() {
         let frame = frame(walls, pose, times_us[number % times_us.len()], number as u64 + 1);
         sweep.push(&frame).unwrap();
@@ -174,7 +182,7 @@ fn a_camera_in_the_hand_tells_everything_of_unknown_surfaces() {
 #[test]
 fn the_motion_is_estimated_where_it_is_not_recorded() {
     let poses = carried(24, 0.3);
-    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE), CameraMotion::Estimated);
+    let mut sweep = SceneSweep::new("room", &settings(), Some(PINHOLE.into()), CameraMotion::Estimated);
     for (number, pose) in poses.iter().enumerate() {
         let frame = frame(&room(), pose, TIMES_US[number % 2], number as u64 + 1);
         sweep.push(&Frame { world_from_camera: None, ..frame }).unwrap();
@@ -258,7 +266,7 @@ fn recordings_that_lack_what_they_should_have_are_refused_by_frame() {
     let with = |change: &dyn Fn(&mut Frame)| {
         let mut frame = good.clone();
         change(&mut frame);
-        push(Some(PINHOLE), CameraMotion::Recorded, &frame).unwrap_err()
+        push(Some(PINHOLE.into()), CameraMotion::Recorded, &frame).unwrap_err()
     };
     assert!(with(&|frame| frame.distance_m = None).contains("frame 0: no distance"));
     assert!(with(&|frame| frame.world_from_camera = None).contains("frame 0: no pose"));
@@ -267,7 +275,7 @@ fn recordings_that_lack_what_they_should_have_are_refused_by_frame() {
     assert!(push(None, CameraMotion::Estimated, &good).unwrap_err().contains("no intrinsics"));
     assert_eq!(push(None, CameraMotion::Still, &good), Ok(()));
     // A frame without a usable pixel is left out.
-    let mut sweep = SceneSweep::new("dark", &settings(), Some(PINHOLE), CameraMotion::Recorded);
+    let mut sweep = SceneSweep::new("dark", &settings(), Some(PINHOLE.into()), CameraMotion::Recorded);
     sweep.push(&Frame { distance_m: Some(good.amplitude.clone()), ..Frame::new(SHAPE) }).unwrap();
     let scene = sweep.finish();
     assert_eq!((scene.source.frames_used, scene.source.frames_left_out), (0, 1));

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::facets::{self, Depth, Facet};
 use super::scatter::Scatter;
-use crate::frame::{Frame, IntegrationTime, Intrinsics, PixelFlags, Shape};
+use crate::frame::{Frame, IntegrationTime, Lens, PixelFlags, PixelRays, Shape};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 
 /// A distance that leaves the median of its neighbours by more than this many standard deviations is dropped: a flying
@@ -31,7 +31,7 @@ const PLAIN_QUANTILES: ([f64; 2], f64) = ([0.2, 0.8], 1.683_242_467);
 #[derive(Clone, Debug)]
 pub(super) struct View {
     shape: Shape,
-    intrinsics: Intrinsics,
+    lens: Lens,
     /// NaN where there is no amplitude to use.
     ln_amplitude: Vec<f64>,
     /// Median of each pixel and its neighbours: what its noise follows from. Its own amplitude would not do, since a
@@ -45,26 +45,17 @@ pub(super) struct View {
 
 impl View {
     /// `None` when the frame has too few pixels with amplitude and distance.
-    pub(super) fn new(frame: &Frame, intrinsics: &Intrinsics) -> Option<Self> {
+    pub(super) fn new(frame: &Frame, lens: &Lens, rays: &PixelRays) -> Option<Self> {
         let shape = frame.shape();
         let distances_m = frame.distance_m.as_ref()?.values();
         let ln_amplitude: Vec<f64> = (0..shape.pixels())
             .map(|index| if is_usable(frame, index) { ln(frame.amplitude.values()[index]) } else { f64::NAN })
             .collect();
-        let depth_per_m = intrinsics.radial_per_depth(shape);
-        let inverse_depth: Vec<f64> = distances_m
-            .iter()
-            .zip(depth_per_m.values())
-            .enumerate()
-            .map(|(index, (&distance_m, &ratio))| {
-                let fine = frame.is_valid(index) && distance_m > 0.0 && distance_m.is_finite();
-                if fine { f64::from(ratio) / f64::from(distance_m) } else { f64::NAN }
-            })
-            .collect();
+        let inverse_depth = inverse_depth(frame, distances_m, rays);
         let usual_ln_amplitude: Vec<f64> =
             (0..shape.pixels()).map(|index| middle(&ln_amplitude, shape, index)).collect();
         let depths = depths(&inverse_depth, &usual_ln_amplitude, shape)?;
-        let fits = WINDOWS.map(|(radius, _)| facets::fit(&depths, shape, intrinsics, radius));
+        let fits = WINDOWS.map(|(radius, _)| facets::fit(&depths, shape, rays, radius));
         let facets = choose(&fits, &ln_amplitude, &depths)?;
         let second = |index: &usize| index % shape.width >= 2;
         let differences = (2..shape.pixels()).filter(second).map(|index| {
@@ -73,10 +64,10 @@ impl View {
         });
         let amplitude_scatter = Scatter::measure(differences)?;
         let integration_time_us = frame.integration_time_us.clone();
-        let intrinsics = *intrinsics;
+        let lens = lens.clone();
         Some(Self {
             shape,
-            intrinsics,
+            lens,
             ln_amplitude,
             usual_ln_amplitude,
             facets,
@@ -100,11 +91,7 @@ impl View {
 
     /// The pixel that sees a point in camera coordinates.
     pub(super) fn pixel_of(&self, point_m: &Vector3<f64>) -> Option<usize> {
-        if point_m[2] <= 0.0 {
-            return None;
-        }
-        let column = (self.intrinsics.fx * point_m[0] / point_m[2] + self.intrinsics.cx).round();
-        let row = (self.intrinsics.fy * point_m[1] / point_m[2] + self.intrinsics.cy).round();
+        let [row, column] = self.lens.project(self.shape, (*point_m).into())?.map(f64::round);
         let inside = (0.0..self.shape.height as f64).contains(&row)
             && (0.0..self.shape.width as f64).contains(&column);
         inside.then(|| row as usize * self.shape.width + column as usize)
@@ -140,6 +127,30 @@ impl View {
             let usual = self.amplitude_scatter.at(0.5 * (low + high));
             all && high - low <= TEXTURE * sigmas * usual.max(LEAST_TEXTURE)
         })
+    }
+}
+
+/// Inverse depth in the axes of a pinhole, inverse distance for any other lens, 1/m; NaN where there is none.
+fn inverse_depth(frame: &Frame, distances_m: &[f32], rays: &PixelRays) -> Vec<f64> {
+    let fine =
+        |index: usize, distance_m: f32| frame.is_valid(index) && distance_m > 0.0 && distance_m.is_finite();
+    let measured = distances_m.iter().enumerate();
+    match rays {
+        PixelRays::Pinhole(pinhole) => {
+            let depth_per_m = pinhole.radial_per_depth(frame.shape());
+            let inverse = |(index, &distance_m): (usize, &f32)| {
+                let ratio = f64::from(depth_per_m.values()[index]);
+                if fine(index, distance_m) { ratio / f64::from(distance_m) } else { f64::NAN }
+            };
+            measured.map(inverse).collect()
+        }
+        PixelRays::Table(table) => {
+            let inverse = |((index, &distance_m), ray): ((usize, &f32), &[f64; 3])| {
+                let seen = fine(index, distance_m) && !ray[0].is_nan();
+                if seen { 1.0 / f64::from(distance_m) } else { f64::NAN }
+            };
+            measured.zip(table.unit()).map(inverse).collect()
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::measure::WindowMedians;
 use super::patches::PATCH_PX;
-use crate::frame::{Frame, Intrinsics, Plane};
+use crate::frame::{Frame, PixelRays, Plane};
 use crate::numerics::robust::Loss;
 use crate::numerics::statistics::{SIGMA_PER_MAD, median};
 
@@ -29,11 +29,12 @@ const ROUNDS: usize = 30;
 /// Settled when a round moves 1/z by less than this share of it.
 const SETTLED: f64 = 1e-6;
 
-/// The plane of a label: `1/z = inverse · (x, y, 1)` for the ray (x, y, 1), so that `inverse` is along the normal.
-#[derive(Clone, Copy, Debug)]
+/// The plane of a label: `1/s = inverse · r` for a point `s r` on the ray r, so that `inverse` is along the normal. For a
+/// ray (x, y, 1), s is the depth; for one of unit length, it is the distance.
+#[derive(Clone, Debug)]
 pub(super) struct FlatLabel {
     inverse: Vector3<f64>,
-    intrinsics: Intrinsics,
+    rays: PixelRays,
 }
 
 /// One pixel of the label.
@@ -53,10 +54,10 @@ impl FlatLabel {
         target: &Plane<u8>,
         label: u8,
         windows: &[(usize, usize)],
-        intrinsics: &Intrinsics,
+        rays: &PixelRays,
     ) -> Option<Self> {
         let distance_m = frame.distance_m.as_ref()?;
-        let pixel = |index: usize| pixel(frame, distance_m, intrinsics, index);
+        let pixel = |index: usize| pixel(frame, distance_m, rays, index);
         let labelled = (0..target.values().len()).filter(|&index| target.values()[index] == label);
         let pixels: Vec<Pixel> = labelled.filter_map(pixel).collect();
         let mine = || windows.iter().filter(|&&(row, column)| target.get(row, column) == Some(label));
@@ -68,7 +69,7 @@ impl FlatLabel {
         if noise_m < NOISY * middle(&pixels, |pixel| pixel.distance_m)? {
             return None;
         }
-        let flat = Self { inverse, intrinsics: *intrinsics };
+        let flat = Self { inverse, rays: rays.clone() };
         let mut deviations: Vec<f64> = mine()
             .filter_map(|&(row, column)| {
                 let width = target.shape().width;
@@ -83,8 +84,8 @@ impl FlatLabel {
 
     /// Gives a window the plane's distance and cosine at its middle; false where its ray does not meet the plane.
     pub(super) fn place(&self, window: &mut WindowMedians) -> bool {
-        let [row, column] = window.pixel.map(f64::from);
-        let ray = Vector3::from(self.intrinsics.ray(row, column));
+        let [row, column] = window.pixel.map(usize::from);
+        let ray = Vector3::from(self.rays.ray(row, column));
         let Some(distance_m) = radial(&self.inverse, &ray) else { return false };
         window.distance_m = distance_m as f32;
         window.cosine = (self.inverse.dot(&ray) / (self.inverse.norm() * ray.norm())).min(1.0) as f32;
@@ -106,13 +107,14 @@ fn middle(pixels: &[Pixel], of: fn(&Pixel) -> f64) -> Option<f64> {
     median(&mut pixels.iter().map(of).collect::<Vec<_>>())
 }
 
-fn pixel(frame: &Frame, distance_m: &Plane<f32>, intrinsics: &Intrinsics, index: usize) -> Option<Pixel> {
+fn pixel(frame: &Frame, distance_m: &Plane<f32>, rays: &PixelRays, index: usize) -> Option<Pixel> {
     let shape = frame.shape();
     let distance_m = f64::from(distance_m.values()[index]);
     let measured = frame.is_valid(index) && distance_m > 0.0 && distance_m.is_finite();
     let (row, column) = shape.place(index);
-    measured.then(|| Pixel {
-        ray: Vector3::from(intrinsics.ray(row as f64, column as f64)),
+    let ray = Vector3::from(rays.ray(row, column));
+    (measured && !ray.x.is_nan()).then(|| Pixel {
+        ray,
         distance_m,
         amplitude_dn: f64::from(frame.amplitude.values()[index]),
     })
@@ -153,7 +155,7 @@ fn settle(pixels: &[Pixel]) -> Option<(Vector3<f64>, f64)> {
     inverse.iter().all(|value| value.is_finite()).then_some((inverse, scale))
 }
 
-/// Linear least squares of 1/z, to start from; the weights are those of the distances at about that of the label.
+/// Linear least squares of the inverse, to start from; the weights are those of the distances at about that of the label.
 fn first(pixels: &[Pixel]) -> Option<Vector3<f64>> {
     let (mut normal, mut moment) = (Matrix3::zeros(), Vector3::zeros());
     for pixel in pixels {
@@ -167,7 +169,7 @@ fn first(pixels: &[Pixel]) -> Option<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Shape;
+    use crate::frame::{Intrinsics, Shape};
     use crate::numerics::hash::splitmix64;
 
     const SHAPE: Shape = Shape::new(60, 80);
@@ -224,7 +226,8 @@ mod tests {
             for seed in 0..10 {
                 let of = |ray: &Vector3<f64>| radial(&inverse, ray).unwrap();
                 let (frame, target) = frame(of, NOISE_M, seed);
-                let plane = FlatLabel::fit(&frame, &target, 1, &windows(), &INTRINSICS).unwrap();
+                let plane =
+                    FlatLabel::fit(&frame, &target, 1, &windows(), &PixelRays::Pinhole(INTRINSICS)).unwrap();
                 let mut window = window();
                 assert!(plane.place(&mut window));
                 found_m += 0.1 * f64::from(window.distance_m);
@@ -251,7 +254,10 @@ mod tests {
             along - (along * along - 1.5 * 1.5 + 0.25).max(0.0).sqrt()
         };
         let (bent, target) = frame(ball, 0.002, 1);
-        assert!(FlatLabel::fit(&bent, &target, 1, &windows(), &INTRINSICS).is_none());
-        assert!(FlatLabel::fit(&bent, &target, 2, &windows(), &INTRINSICS).is_none(), "not in sight");
+        assert!(FlatLabel::fit(&bent, &target, 1, &windows(), &PixelRays::Pinhole(INTRINSICS)).is_none());
+        assert!(
+            FlatLabel::fit(&bent, &target, 2, &windows(), &PixelRays::Pinhole(INTRINSICS)).is_none(),
+            "not in sight"
+        );
     }
 }

@@ -176,8 +176,8 @@ fn places(targets: &[TargetWindows]) -> Result<Places, TargetError> {
     let used = || targets.iter().filter(|target| !target.is_empty());
     let shapes = used().filter_map(|target| target.shape.map(|shape| (&*target.source.recording, shape)));
     let shape = common_shape(shapes)?.ok_or(JointError::TooFew { found: 0, expected: 2 })?;
-    let intrinsics = used().find_map(|target| target.intrinsics);
-    Ok(Places::new(shape, intrinsics.as_ref()))
+    let lens = used().find_map(|target| target.lens.as_ref());
+    Ok(Places::new(shape, lens))
 }
 
 fn warn(targets: &[TargetWindows], warnings: &mut Vec<TargetWarning>) {
@@ -185,7 +185,7 @@ fn warn(targets: &[TargetWindows], warnings: &mut Vec<TargetWarning>) {
         let recording = || target.source.recording.clone();
         if target.is_empty() {
             warnings.push(TargetWarning::NoWindows { recording: recording() });
-        } else if target.intrinsics.is_none() {
+        } else if target.lens.is_none() {
             warnings.push(TargetWarning::NoIntrinsics { recording: recording() });
         } else if target.without_normal * 2 > target.len() {
             let (windows, of) = (target.without_normal, target.len());

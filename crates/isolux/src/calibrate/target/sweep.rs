@@ -7,7 +7,7 @@ use super::measure::{WindowMedians, measure, middle_cosine};
 use super::patches::{PATCH_PX, Patches};
 use crate::calibrate::sweep_frames::SweepFrames;
 use crate::calibrate::{CalibrateSettings, MeasureError};
-use crate::frame::{Frame, IntegrationTime, Intrinsics, Plane, Shape, Window};
+use crate::frame::{Frame, IntegrationTime, Lens, PixelRays, Plane, Shape, Window};
 use crate::surface::Incidence;
 use crate::terms::Source;
 
@@ -16,7 +16,9 @@ use crate::terms::Source;
 pub struct TargetSweep {
     frames: SweepFrames,
     frames_used: usize,
-    intrinsics: Option<Intrinsics>,
+    lens: Option<Lens>,
+    /// Those of the lens, as soon as the shape is known.
+    rays: Option<PixelRays>,
     shape: Option<Shape>,
     patches: Patches,
     incidence: Incidence,
@@ -30,7 +32,7 @@ pub struct TargetSweep {
 pub struct TargetWindows {
     /// The recording.
     pub(super) source: Source,
-    pub(super) intrinsics: Option<Intrinsics>,
+    pub(super) lens: Option<Lens>,
     /// `None` without a frame.
     pub(super) shape: Option<Shape>,
     pub(super) windows: Vec<WindowMedians>,
@@ -54,18 +56,15 @@ impl TargetWindows {
 }
 
 impl TargetSweep {
-    /// Starts a recording; `recording` is its name in errors and in the calibration. Without `intrinsics`, there
-    /// are no angles.
+    /// Starts a recording; `recording` is its name in errors and in the calibration. Without a `lens`, there are
+    /// no angles.
     #[must_use]
-    pub fn new(
-        recording: impl Into<String>,
-        settings: &CalibrateSettings,
-        intrinsics: Option<Intrinsics>,
-    ) -> Self {
+    pub fn new(recording: impl Into<String>, settings: &CalibrateSettings, lens: Option<Lens>) -> Self {
         Self {
             frames: SweepFrames::new(recording, settings),
             frames_used: 0,
-            intrinsics: intrinsics.filter(Intrinsics::is_usable),
+            lens: lens.filter(Lens::is_usable),
+            rays: None,
             shape: None,
             patches: Patches::default(),
             incidence: Incidence::default(),
@@ -90,7 +89,7 @@ impl TargetSweep {
     pub fn push(&mut self, frame: &Frame) -> Result<(), MeasureError> {
         let number = self.frames.next(frame)?;
         let target = frame.target.as_ref().ok_or(MeasureError::NoTarget { frame: number })?;
-        let shape = *self.shape.get_or_insert(frame.shape());
+        let shape = self.shape(frame.shape(), number)?;
         target
             .expect_shape("target", shape)
             .map_err(|source| MeasureError::Shape { frame: number, source })?;
@@ -105,6 +104,15 @@ impl TargetSweep {
         Ok(())
     }
 
+    /// The shape of the first frame; it is for that one that the rays are computed.
+    fn shape(&mut self, found: Shape, frame: usize) -> Result<Shape, MeasureError> {
+        if let (None, Some(lens)) = (self.shape, &self.lens) {
+            lens.check_shape(found).map_err(|source| MeasureError::Lens { frame, source })?;
+            self.rays = Some(lens.pixel_rays(found));
+        }
+        Ok(*self.shape.get_or_insert(found))
+    }
+
     /// The windows of all labels. Distance and angle are those of the label's plane, where it is flat, else those of
     /// the window.
     fn measure(&mut self, frame: &Frame, target: &Plane<u8>, number: u32) {
@@ -114,16 +122,16 @@ impl TargetSweep {
         for &(row, column) in corners {
             let Some(mut window) = measure(frame, target, (row, column)) else { continue };
             window.frame = number;
-            if let (Some(distance_m), Some(intrinsics)) = (&frame.distance_m, &self.intrinsics) {
+            if let (Some(distance_m), Some(rays)) = (&frame.distance_m, &self.rays) {
                 let plane = planes
                     .entry(window.label)
-                    .or_insert_with(|| FlatLabel::fit(frame, target, window.label, corners, intrinsics));
-                if !plane.is_some_and(|plane| plane.place(&mut window)) {
+                    .or_insert_with(|| FlatLabel::fit(frame, target, window.label, corners, rays));
+                if !plane.as_ref().is_some_and(|plane| plane.place(&mut window)) {
                     if !has_normals {
-                        self.incidence.take(frame, distance_m, intrinsics);
+                        self.incidence.take(frame, distance_m, rays);
                         has_normals = true;
                     }
-                    let cosine = |index| self.incidence.cosine(index, intrinsics);
+                    let cosine = |index| self.incidence.cosine(index, rays);
                     window.cosine = middle_cosine(cosine, frame.shape(), (row, column));
                 }
                 self.without_normal += usize::from(window.cosine.is_nan());
@@ -137,7 +145,7 @@ impl TargetSweep {
     pub fn finish(self) -> TargetWindows {
         TargetWindows {
             source: self.frames.source(self.frames_used),
-            intrinsics: self.intrinsics,
+            lens: self.lens,
             shape: self.shape,
             windows: self.windows,
             without_normal: self.without_normal,

@@ -5,7 +5,7 @@ use crate::calibrate::factor_terms::FactorWarning;
 use crate::calibrate::{
     CalibrateError, CalibrateSettings, ExposureFit, FitWarning, MeasureError, Measurements,
 };
-use crate::frame::{Frame, Intrinsics, Plane, Shape};
+use crate::frame::{Frame, Intrinsics, Lens, Plane, Shape};
 use crate::terms::profile::Places;
 
 const SHAPE: Shape = Shape::new(60, 80);
@@ -19,7 +19,7 @@ fn ln_profile([x, y]: [f64; 2]) -> f64 {
 /// A board through (0, 0, z), `slant` its slopes over x and y, that fills the image; 1 % of noise.
 fn board(z: f64, slant: [f64; 2], state: &mut u64) -> Frame {
     let mut frame = Frame::new(SHAPE);
-    let places = Places::new(SHAPE, Some(&INTRINSICS));
+    let places = Places::new(SHAPE, Some(&INTRINSICS.into()));
     let mut distances = Plane::filled(SHAPE, 0.0);
     for index in 0..SHAPE.pixels() {
         let (row, column) = ((index / SHAPE.width) as f64, (index % SHAPE.width) as f64);
@@ -42,7 +42,7 @@ fn board(z: f64, slant: [f64; 2], state: &mut u64) -> Frame {
 
 fn calibrated(frames: &[Frame], intrinsics: Option<Intrinsics>) -> (crate::Calibration, Vec<FitWarning>) {
     let settings = CalibrateSettings::default();
-    let mut sweep = TargetSweep::new("board", &settings, intrinsics);
+    let mut sweep = TargetSweep::new("board", &settings, intrinsics.map(Lens::from));
     frames.iter().try_for_each(|frame| sweep.push(frame)).unwrap();
     let mut measured = Measurements::default();
     measured.add_target(sweep.finish());

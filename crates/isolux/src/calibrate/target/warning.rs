@@ -88,7 +88,7 @@ impl fmt::Display for TargetWarning {
             ),
             Self::NoIntrinsics { recording } => write!(
                 f,
-                "{recording}: no intrinsics {{fx, fy, cx, cy}}, so no angles of incidence: its windows count for no \
+                "{recording}: no intrinsics {{fx, fy, cx, cy}} and no rays, so no angles of incidence: its windows count for no \
                  angle"
             ),
             Self::Curved { recording, deviation_m, focal_factor } => write!(

@@ -1,6 +1,6 @@
 //! Image coordinates that the illumination profile is a function of.
 
-use crate::frame::{Intrinsics, Shape};
+use crate::frame::{Lens, Shape};
 
 /// Where pixels lie: x to the right and y down from the principal point, in units of the image's half diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,10 +14,10 @@ pub struct Places {
 impl Places {
     /// The coordinates of an image of `shape`.
     #[must_use]
-    pub fn new(shape: Shape, intrinsics: Option<&Intrinsics>) -> Self {
+    pub fn new(shape: Shape, lens: Option<&Lens>) -> Self {
         let centre = [shape.height, shape.width].map(|pixels| 0.5 * (pixels as f64 - 1.0));
-        let usable = intrinsics.filter(|intrinsics| intrinsics.is_usable());
-        Self { shape, origin: usable.map_or(centre, |intrinsics| [intrinsics.cy, intrinsics.cx]) }
+        let usable = lens.filter(|lens| lens.is_usable());
+        Self { shape, origin: usable.and_then(Lens::principal_point).unwrap_or(centre) }
     }
 
     /// Half the diagonal of the image, pixels.
@@ -70,6 +70,7 @@ impl Places {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::Intrinsics;
 
     #[test]
     fn corners_are_one_away_and_cells_hold_their_centres() {
@@ -80,7 +81,7 @@ mod tests {
             assert_eq!(places.cell(places.cell_centre(cell)), Some(cell));
         }
         assert_eq!(places.cell([0.81, 0.0]), None);
-        let intrinsics = Intrinsics { fx: 30.0, fy: 30.0, cx: 18.0, cy: 15.0 };
-        assert_eq!(Places::new(Shape::new(30, 40), Some(&intrinsics)).at(15.0, 43.0), [1.0, 0.0]);
+        let lens = Lens::from(Intrinsics { fx: 30.0, fy: 30.0, cx: 18.0, cy: 15.0 });
+        assert_eq!(Places::new(Shape::new(30, 40), Some(&lens)).at(15.0, 43.0), [1.0, 0.0]);
     }
 }

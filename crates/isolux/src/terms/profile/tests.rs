@@ -1,13 +1,13 @@
 use super::*;
-use crate::frame::{Intrinsics, Shape};
+use crate::frame::{Intrinsics, Lens, Shape};
 use crate::terms::FitQuality;
 
 const SHAPE: Shape = Shape::new(48, 64);
 
 /// cos⁴ of a lens, with a tilt, seen in the middle of the image only.
 fn profile() -> Profile {
-    let intrinsics = Intrinsics { fx: 60.0, fy: 60.0, cx: 30.0, cy: 25.0 };
-    let places = Places::new(SHAPE, Some(&intrinsics));
+    let lens = Lens::from(Intrinsics { fx: 60.0, fy: 60.0, cx: 30.0, cy: 25.0 });
+    let places = Places::new(SHAPE, Some(&lens));
     let middle = |cell: usize| (2..14).contains(&(cell % 16)) && (2..10).contains(&(cell / 16));
     Profile {
         version: 1,
