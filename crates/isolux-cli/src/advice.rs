@@ -50,6 +50,13 @@ fn words(advice: &Advice) -> String {
         Advice::SkipFrames => "drop the first ones with --skip-frames",
         Advice::Window => "use another --window",
         Advice::AcceptPoorFit => "record again, or take it as it is with --accept-poor-fit",
+        Advice::RecordUnscaledValues => {
+            "record the values as the camera delivers them, such as its 16 bits, not images that were stretched for viewing"
+        }
+        Advice::RecordTimes => {
+            "record `integration_time_us` with each frame, or fix the exposure; --time relative takes the factor out of what \
+             stands still"
+        }
         _ => "",
     };
     fixed.to_owned()
@@ -59,6 +66,7 @@ fn words(advice: &Advice) -> String {
 fn json(field: &RecordingField) -> String {
     match field {
         RecordingField::SaturatedAmplitude { value_dn } => format!("\"saturated_amplitude\": {value_dn}"),
+        RecordingField::IntegrationTime => "\"integration_time_us\": its value in µs".to_owned(),
         _ => String::new(),
     }
 }

@@ -1,6 +1,7 @@
 //! Takes some frames of a recording and names what contradicts its claims.
 
 use super::claims::Claims;
+use super::exposure::Exposures;
 use super::extreme::Values;
 use super::suspicion::Suspicion;
 use crate::frame::{Frame, Shape, ShapeError};
@@ -16,13 +17,15 @@ pub struct Inspector {
     claims: Claims,
     amplitudes: Values,
     distances: Values,
+    exposures: Exposures,
 }
 
 impl Inspector {
     /// An inspector of frames of `shape`.
     #[must_use]
     pub fn new(shape: Shape, claims: Claims) -> Self {
-        Self { shape, claims, amplitudes: Values::default(), distances: Values::default() }
+        let (amplitudes, distances) = (Values::default(), Values::default());
+        Self { shape, claims, amplitudes, distances, exposures: Exposures::new(shape) }
     }
 
     /// Takes in frame `index` of the recording. Frames come in ascending order and may be left out; neighbours show
@@ -38,6 +41,7 @@ impl Inspector {
         let stride = self.shape.pixels().div_ceil(SAMPLED_PIXELS) | 1;
         self.amplitudes.push_amplitudes(frame, stride);
         self.distances.push_distances(frame, stride);
+        self.exposures.push(frame);
         Ok(())
     }
 
@@ -50,6 +54,6 @@ impl Inspector {
             share: code.share,
             others_dn: code.others,
         });
-        amplitude.into_iter().collect()
+        self.exposures.finish().into_iter().chain(amplitude).collect()
     }
 }

@@ -25,6 +25,7 @@
 //! ```
 
 mod claims;
+mod exposure;
 mod extreme;
 mod inspector;
 mod suspicion;

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::advice::{Advice, RecordingField};
+use crate::common_factor::{ExposureCourse, SpannedFrames};
 
 /// Something about a recording that is probably not as it says. [`Display`](fmt::Display) says what was found;
 /// [`Suspicion::advice`] what to do.
@@ -21,6 +22,10 @@ pub enum Suspicion {
         /// Largest of the other amplitudes, DN.
         others_dn: f32,
     },
+    /// Every frame spans exactly the same values: frames were scaled one by one.
+    ScaledByFrame(SpannedFrames),
+    /// All still pixels share a factor from frame to frame that no recorded time explains.
+    ExposureChanged(ExposureCourse),
 }
 
 impl Suspicion {
@@ -31,6 +36,8 @@ impl Suspicion {
             Self::AmplitudeCode { value_dn, .. } => {
                 Some(Advice::WriteField(RecordingField::SaturatedAmplitude { value_dn: *value_dn }))
             }
+            Self::ScaledByFrame(_) => Some(Advice::RecordUnscaledValues),
+            Self::ExposureChanged(_) => Some(Advice::RecordTimes),
         }
     }
 }
@@ -44,6 +51,8 @@ impl fmt::Display for Suspicion {
                  for saturated pixels, taken for a measurement",
                 100.0 * share
             ),
+            Self::ScaledByFrame(spanned) => spanned.fmt(f),
+            Self::ExposureChanged(course) => course.fmt(f),
         }
     }
 }
