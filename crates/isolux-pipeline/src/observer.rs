@@ -17,6 +17,8 @@ pub enum Work {
     EstimatingNoise,
     /// Estimating the ambient light of a recording.
     EstimatingAmbientLight,
+    /// Comparing all frames of a recording by what stands still.
+    ComparingFrames,
     /// Looking at some frames of a recording.
     Inspecting,
     /// Evaluating a recording before and after standardization.
@@ -44,6 +46,7 @@ impl fmt::Display for Work {
             Self::ReadingTimes => "reading times",
             Self::EstimatingNoise => "estimating the noise",
             Self::EstimatingAmbientLight => "estimating the ambient light",
+            Self::ComparingFrames => "comparing frames",
             Self::Inspecting => "looking at the recording",
             Self::Evaluating => "evaluating",
             Self::Diagnosing => "diagnosing",

@@ -54,6 +54,7 @@ impl SourceFacts {
             intrinsics: self.intrinsics(),
             modulation_frequency_hz: self.info.modulation_frequency_hz,
             ambient_light: None,
+            relative_exposure: None,
         }
     }
 }

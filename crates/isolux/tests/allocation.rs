@@ -158,6 +158,7 @@ fn a_stream_tells_the_bytes_that_it_holds() {
         intrinsics: Some(Intrinsics { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5 }),
         modulation_frequency_hz: None,
         ambient_light: None,
+        relative_exposure: None,
     };
     for rule in DenoiseRule::ALL {
         let choice = Choice {
@@ -189,6 +190,7 @@ fn nothing_is_allocated_per_frame_with_profile_and_angle() {
         intrinsics: Some(intrinsics),
         modulation_frequency_hz: None,
         ambient_light: None,
+        relative_exposure: None,
     };
     let profile = Profile {
         version: 1,

@@ -109,6 +109,11 @@ impl Course {
         }
     }
 
+    /// Counts a frame that cannot be compared.
+    pub(crate) fn skip(&mut self) {
+        self.placed.push(None);
+    }
+
     fn note_time(&mut self, look: &Look) {
         match &look.time {
             LookTime::Unknown => self.unknown = true,

@@ -26,6 +26,10 @@ impl Grid {
         Self { shape, stride }
     }
 
+    pub(crate) fn shape(self) -> Shape {
+        self.shape
+    }
+
     fn pixels(self) -> impl Iterator<Item = usize> {
         (0..self.shape.pixels()).step_by(self.stride)
     }

@@ -11,10 +11,12 @@
 mod course;
 mod look;
 mod pair;
+mod relative;
 mod spans;
 
 pub(crate) use course::{Course, Times};
 pub use course::{ExposureClaim, ExposureCourse};
 pub(crate) use look::{Grid, Look};
 pub(crate) use spans::Spans;
+pub use relative::{ExposureSurvey, RelativeExposure};
 pub use spans::SpannedFrames;

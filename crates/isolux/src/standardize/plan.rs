@@ -77,7 +77,7 @@ impl Plan {
     /// Channels that the chain reads.
     pub(super) fn needed(&self) -> Channels {
         let mut needed = Channels::AMPLITUDE;
-        needed.set(Channels::INTEGRATION_TIME, self.time != TimePlan::None);
+        needed.set(Channels::INTEGRATION_TIME, self.time.reads_time());
         needed.set(Channels::DISTANCE, self.distance.is_some() || self.angle.is_some());
         needed
             | self.saturation.as_ref().map_or(Channels::empty(), SaturationCorrection::channels)

@@ -1,6 +1,7 @@
 //! What a plan must know about the recording.
 
 use super::AmbientLight;
+use crate::common_factor::RelativeExposure;
 use crate::frame::{Channels, Intrinsics, Shape};
 
 /// Facts about a recording that decide which steps are possible.
@@ -18,11 +19,21 @@ pub struct RecordingTraits {
     /// Its ambient light, without which the response cannot tell the fill of a pixel from amplitude and distance.
     /// [`AmbientSurvey`](crate::calibrate::AmbientSurvey) estimates it.
     pub ambient_light: Option<AmbientLight>,
+    /// What its frames have relative to each other, which the step `relative` takes out. An
+    /// [`ExposureSurvey`](super::ExposureSurvey) of all frames finds it.
+    pub relative_exposure: Option<RelativeExposure>,
 }
 
 /// The traits of a recording of which only the channels are known.
 impl From<Channels> for RecordingTraits {
     fn from(channels: Channels) -> Self {
-        Self { channels, shape: None, intrinsics: None, modulation_frequency_hz: None, ambient_light: None }
+        Self {
+            channels,
+            shape: None,
+            intrinsics: None,
+            modulation_frequency_hz: None,
+            ambient_light: None,
+            relative_exposure: None,
+        }
     }
 }

@@ -51,6 +51,13 @@ pub enum Note {
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
+    /// The frames are scaled relative to each other, by what stands still.
+    Relative {
+        /// Frames that could be compared.
+        compared: usize,
+        /// Frames in which nothing stands still: they get no values.
+        without: usize,
+    },
     /// The calibration has no angle term; Lambert's cosine is used.
     Lambert,
 }
@@ -68,6 +75,7 @@ impl Note {
             Self::ChannelMissing { .. }
             | Self::FillUnknown
             | Self::NothingToDenoise
+            | Self::Relative { .. }
             | Self::ProfileFormat { .. } => None,
         }
     }
@@ -101,6 +109,14 @@ impl fmt::Display for Note {
                 f,
                 "the frames are {found}, the calibration's `profile` is for {expected}: this step is left out"
             ),
+            Self::Relative { compared, without } => {
+                write!(
+                    f,
+                    "the {compared} frames are comparable with each other, by what stands still in them; their level is \
+                     relative, not that of any integration time"
+                )?;
+                if *without > 0 { write!(f, ". {without} frames in which nothing stands still get no values") } else { Ok(()) }
+            }
             Self::Lambert => f.write_str(
                 "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets",
             ),
@@ -136,6 +152,12 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
+    /// The step `relative` was asked for, but the frames cannot be compared.
+    #[error(
+        "`relative` was asked for, but the frames cannot be compared: in most of them, too little stands still, or they can \
+         be read only once"
+    )]
+    NothingStandsStill,
     /// The response by amplitude and distance was asked for, but the ambient light is unknown.
     #[error("tier `ambient` was asked for, but the ambient light of the recording is not known")]
     AmbientLightUnknown,
@@ -171,6 +193,7 @@ impl PlanError {
             Self::NoiseUnknown => Some(Advice::GiveNoise),
             Self::IntrinsicsMissing => Some(Advice::GiveIntrinsics),
             Self::AmbientLightUnknown
+            | Self::NothingStandsStill
             | Self::ChannelMissing { .. }
             | Self::ProfileFormat { .. }
             | Self::Calibration(_) => None,
