@@ -10,6 +10,7 @@ use crate::calibrate::CalibrateSettings;
 use crate::calibrate::exposure::{ExposureCurve, MissingTier, fit_response};
 use crate::calibrate::factor_terms::{FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{Factor, JointError, JointFit, JointModel};
+use crate::calibrate::levels::show_one_exposure;
 use crate::calibrate::measure_error::{UnlikeShapes, common_shape};
 use crate::calibration::Calibration;
 use crate::terms::lut::{LutError, RelativeSample};
@@ -39,7 +40,8 @@ pub(in crate::calibrate) fn fit(
     };
     let factors = fit.findings.iter().map(|finding| finding.factor);
     let refused = factors.filter_map(|factor| FactorWarning::refused(&fit, factor));
-    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(SceneWarning::Factor));
+    let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
+    warnings.extend(shared.into_iter().chain(refused).chain(FactorWarning::uncertain(&fit)).map(SceneWarning::Factor));
     let fitted = Fitted {
         observations: &input.observations,
         fit: &fit,
@@ -74,10 +76,16 @@ fn solve(
         .ok_or_else(|| nothing(JointError::TooFew { found: 0, expected: 2 }))?;
     let JointModel { time, distance, profile, .. } = input.model;
     if time.is_none() && distance.is_none() && profile.is_none() {
-        return Err(SceneWarning::NothingVaries);
+        let unknown = input.levels.of_frames();
+        return Err(if unknown { SceneWarning::StillAtUnknownTimes } else { SceneWarning::NothingVaries });
     }
-    let fit = lambert::settle(&input).map_err(nothing)?;
-    Ok((input, fit))
+    let free = lambert::settle(&input).map_err(nothing)?;
+    if !time.is_some_and(|time| time.of_frames) {
+        return Ok((input, free));
+    }
+    let one = JointInput { model: JointModel { time: None, ..input.model }, ..input.clone() };
+    let shared = lambert::settle(&one).map_err(nothing)?;
+    Ok(if show_one_exposure(&shared, &free) { (one, shared) } else { (input, free) })
 }
 
 /// Fits the response to still scenes at several times, if no sweep was given.
@@ -186,7 +194,7 @@ fn lut(
         relative_amplitude: s.exp(),
         spread: finding.standard_error,
     };
-    let samples: Vec<RelativeSample> = input.times_us.iter().zip(ln_time).map(sample).collect();
+    let samples: Vec<RelativeSample> = input.levels.times_us.iter().zip(ln_time).map(sample).collect();
     let lut = Lut::of_curve(&samples, settings.reference_time_us())?;
     let fit = FitQuality { points: lut.fit.points, ..fitted.quality() };
     let lut = Lut { fit, ..lut };

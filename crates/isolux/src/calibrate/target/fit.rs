@@ -11,6 +11,7 @@ use super::{TargetError, TargetWarning, TargetWindows, flatness, gloss};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
+use crate::calibrate::levels::show_one_exposure;
 use crate::calibration::{Calibration, Terms};
 use crate::terms::angle::LAMBERT;
 
@@ -28,7 +29,14 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
     let mut warnings = Vec::new();
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
-    let first = joint::solve(&input.observations, &input.model)?;
+    let mut first = joint::solve(&input.observations, &input.model)?;
+    if input.model.time.is_some_and(|time| time.of_frames) {
+        let one = JointModel { time: None, ..input.model };
+        let shared = joint::solve(&input.observations, &one)?;
+        if show_one_exposure(&shared, &first) {
+            (input.model, first) = (one, shared);
+        }
+    }
     input.expect(targets, &first.residuals);
     warnings.extend(targets.iter().filter_map(curved));
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
@@ -95,7 +103,8 @@ fn determined(
     }
     let others = [Factor::Time, Factor::Distance, Factor::Profile];
     let refused = others.into_iter().filter_map(|factor| FactorWarning::refused(&fit, factor));
-    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(TargetWarning::Factor));
+    let shared = FactorWarning::shared_by_frames(observations, &fit);
+    warnings.extend(shared.into_iter().chain(refused).chain(FactorWarning::uncertain(&fit)).map(TargetWarning::Factor));
     Ok(fit)
 }
 
