@@ -41,8 +41,10 @@ fn wall(frame: usize, pixel: usize, moved: usize) -> (f64, f64) {
 /// Amplitudes of `gains.len()` frames as `dtype`, and distances.
 fn recorded(gains: &[f64], moved: usize) -> (Vec<f64>, Vec<f64>) {
     let mut noise = Noise(7);
-    let pixels = || gains.iter().enumerate().flat_map(|(frame, gain)| (0..PIXELS).map(move |p| (frame, *gain, p)));
-    let amplitude = pixels().map(|(frame, gain, pixel)| gain * wall(frame, pixel, moved).0 + NOISE_DN * noise.next());
+    let pixels =
+        || gains.iter().enumerate().flat_map(|(frame, gain)| (0..PIXELS).map(move |p| (frame, *gain, p)));
+    let amplitude =
+        pixels().map(|(frame, gain, pixel)| gain * wall(frame, pixel, moved).0 + NOISE_DN * noise.next());
     let amplitude = amplitude.map(|dn| dn.round().max(0.0)).collect();
     (amplitude, pixels().map(|(frame, _, pixel)| wall(frame, pixel, moved).1).collect())
 }
@@ -108,7 +110,9 @@ fn variation(values: &[f32]) -> f64 {
 #[test]
 fn frames_that_were_stretched_one_by_one_are_noticed() {
     let gains: Vec<f64> = (0..20).map(|_| 1.0).collect();
-    for (name, dtype, full, step) in [("8 bit", "|u1", 255.0, 1.0), ("float", "<f4", 1.0, 1e-9), ("16 bit", "<u2", 65535.0, 1.0)] {
+    for (name, dtype, full, step) in
+        [("8 bit", "|u1", 255.0, 1.0), ("float", "<f4", 1.0, 1e-9), ("16 bit", "<u2", 65535.0, 1.0)]
+    {
         let (mut amplitude, distance) = recorded(&gains, 0);
         // A glint in every second frame is what the others are scaled by.
         amplitude.chunks_mut(PIXELS).step_by(2).for_each(|frame| frame[131] = 25000.0);
@@ -157,7 +161,8 @@ fn jumps_and_stated_times_that_do_not_explain_them_are_told() {
     assert_eq!(finding(&one, "exposure_changed").unwrap()["claim"], "constant");
     // Recorded times that alternate, and a gain that does not follow them.
     let times_us: Vec<f64> = (0..40).map(|frame| if frame % 4 < 2 { 500.0 } else { 1000.0 }).collect();
-    let gains: Vec<f64> = automatic().iter().zip(&times_us).map(|(gain, time_us)| gain * time_us / 800.0).collect();
+    let gains: Vec<f64> =
+        automatic().iter().zip(&times_us).map(|(gain, time_us)| gain * time_us / 800.0).collect();
     let recorded = sandbox(&with_times(still(&gains), times_us.clone()), "{}");
     assert_eq!(finding(&recorded, "exposure_changed").unwrap()["claim"], "recorded");
     // The same times, and gains that follow them.

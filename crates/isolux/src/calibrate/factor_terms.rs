@@ -52,8 +52,11 @@ pub(super) fn held_out(observations: &[Observation], model: &JointModel, folds: 
 fn take_out_levels(errors: &mut [(u32, f64)]) {
     let mut order: Vec<usize> = (0..errors.len()).collect();
     order.sort_by_key(|&index| errors[index].0);
-    for frame in order.chunk_by(|a, b| errors[*a].0 == errors[*b].0).map(<[usize]>::to_vec).collect::<Vec<_>>() {
-        let mut finite: Vec<f64> = frame.iter().map(|&i| errors[i].1).filter(|error| error.is_finite()).collect();
+    for frame in
+        order.chunk_by(|a, b| errors[*a].0 == errors[*b].0).map(<[usize]>::to_vec).collect::<Vec<_>>()
+    {
+        let mut finite: Vec<f64> =
+            frame.iter().map(|&i| errors[i].1).filter(|error| error.is_finite()).collect();
         let level = median(&mut finite).unwrap_or(0.0);
         frame.iter().for_each(|&index| errors[index].1 -= level);
     }
@@ -133,7 +136,9 @@ impl FactorWarning {
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
-            Self::Refused { reason: Refusal::Confounded { with, .. }, .. } if with.contains(&Factor::Exposure) => {
+            Self::Refused { reason: Refusal::Confounded { with, .. }, .. }
+                if with.contains(&Factor::Exposure) =>
+            {
                 Some(Advice::WriteField(RecordingField::IntegrationTime))
             }
             Self::SharedByFrames { .. } => Some(Advice::RecordTimes),

@@ -9,8 +9,8 @@ const MOST_FRAMES: usize = 256;
 const LARGEST_GROWTH: f64 = 1.5;
 /// It is shown by a law that follows from single frames too: the exponents agree within this many standard errors, of
 /// which each is no larger than this.
-const STANDARD_ERRORS: f64 = 3.0;
-const LARGEST_ERROR: f64 = 0.15;
+const STANDARD_ERRORS: f64 = 2.0;
+const LARGEST_ERROR: f64 = 0.3;
 
 /// The exposures of all observations.
 #[derive(Clone, Debug, Default)]
@@ -100,7 +100,8 @@ pub(super) fn shared_by_frames(residuals: impl Iterator<Item = (u32, f64)>) -> O
     let mut residuals: Vec<(u32, f64)> = residuals.filter(|(_, residual)| residual.is_finite()).collect();
     residuals.sort_by_key(|(frame, _)| *frame);
     let frames = residuals.chunk_by(|a, b| a.0 == b.0).filter(|frame| frame.len() >= LEAST[0]);
-    let middle = |frame: &[(u32, f64)]| median(&mut frame.iter().map(|(_, residual)| *residual).collect::<Vec<_>>());
+    let middle =
+        |frame: &[(u32, f64)]| median(&mut frame.iter().map(|(_, residual)| *residual).collect::<Vec<_>>());
     let mut factors: Vec<f64> = frames.filter_map(middle).collect();
     if factors.len() < LEAST[1] {
         return None;

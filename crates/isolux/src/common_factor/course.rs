@@ -139,10 +139,12 @@ impl Course {
 
     /// ln factors of the frames, 0 for their median frame; `None` for frames that cannot be compared with most others.
     pub(crate) fn ln_factors(&self) -> Vec<Option<f64>> {
-        let count = |number: usize| self.placed.iter().flatten().filter(|(other, _)| *other == number).count();
+        let count =
+            |number: usize| self.placed.iter().flatten().filter(|(other, _)| *other == number).count();
         let main = (0..self.references.len()).max_by_key(|&number| (count(number), usize::MAX - number));
         let of_main = |place: &Option<(usize, f64)>| place.filter(|(number, _)| Some(*number) == main);
-        let mut all: Vec<f64> = self.placed.iter().filter_map(of_main).map(|(_, ln_factor)| ln_factor).collect();
+        let mut all: Vec<f64> =
+            self.placed.iter().filter_map(of_main).map(|(_, ln_factor)| ln_factor).collect();
         let middle = median(&mut all).unwrap_or(0.0);
         self.placed.iter().map(|place| of_main(place).map(|(_, ln_factor)| ln_factor - middle)).collect()
     }

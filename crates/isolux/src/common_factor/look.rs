@@ -22,7 +22,8 @@ impl Grid {
 
     pub(crate) fn new(shape: Shape) -> Self {
         // An odd number, so that columns do not alias with the width of the image.
-        let stride = if shape.pixels() > Self::SAMPLES { shape.pixels().div_ceil(Self::SAMPLES) | 1 } else { 1 };
+        let stride =
+            if shape.pixels() > Self::SAMPLES { shape.pixels().div_ceil(Self::SAMPLES) | 1 } else { 1 };
         Self { shape, stride }
     }
 
@@ -109,7 +110,8 @@ impl Look {
             }
             (LookTime::Samples(one), LookTime::Samples(other)) => {
                 let (one, other) = (one[sample], other[sample]);
-                unknown(one) && unknown(other) || IntegrationTime::same(one, other, IntegrationTime::SAME_RATIO)
+                unknown(one) && unknown(other)
+                    || IntegrationTime::same(one, other, IntegrationTime::SAME_RATIO)
             }
             _ => false,
         }
@@ -118,7 +120,9 @@ impl Look {
 
 /// Clipped values do not follow the exposure.
 fn leave_out_clipped(values: &mut [f32]) {
-    let Some(largest) = values.iter().copied().filter(|value| value.is_finite()).reduce(f32::max) else { return };
+    let Some(largest) = values.iter().copied().filter(|value| value.is_finite()).reduce(f32::max) else {
+        return;
+    };
     if values.iter().filter(|&&value| value == largest).count() > SHARED_LARGEST {
         values.iter_mut().filter(|value| **value == largest).for_each(|value| *value = f32::NAN);
     }

@@ -13,10 +13,12 @@ mod look;
 mod pair;
 mod relative;
 mod spans;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use course::{Course, Times};
 pub use course::{ExposureClaim, ExposureCourse};
 pub(crate) use look::{Grid, Look};
-pub(crate) use spans::Spans;
 pub use relative::{ExposureSurvey, RelativeExposure};
 pub use spans::SpannedFrames;
+pub(crate) use spans::Spans;

@@ -39,8 +39,9 @@ pub(crate) fn between(grid: Grid, reference: &Look, look: &Look, same_times: boo
     };
     let (mut bright, mut ratios) = (0, Vec::new());
     for (sample, (&before, &after)) in reference.ln_values.iter().zip(&look.ln_values).enumerate() {
-        // Dim pixels are noisy, and coarse in 8 bits.
-        if before >= reference.ln_middle && !after.is_nan() {
+        // Dim pixels are noisy, and coarse in 8 bits. Both frames choose alike, or noise that makes a pixel bright in one
+        // of them would make that frame brighter.
+        if before + after >= reference.ln_middle + look.ln_middle {
             bright += 1;
             if (!same_times || reference.same_time(look, sample)) && (!has_distance || stands(sample)) {
                 ratios.push((grid.block(sample), f64::from(after - before), f64::from(before)));

@@ -65,7 +65,8 @@ impl ExposureSurvey {
     #[must_use]
     pub fn finish(&self) -> Option<RelativeExposure> {
         let ln_factors = self.course.ln_factors();
-        let multiplier = |ln_factor: &Option<f64>| ln_factor.map_or(f32::NAN, |ln_factor| (-ln_factor).exp() as f32);
+        let multiplier =
+            |ln_factor: &Option<f64>| ln_factor.map_or(f32::NAN, |ln_factor| (-ln_factor).exp() as f32);
         let multipliers: Arc<[f32]> = ln_factors.iter().map(multiplier).collect();
         let compared = ln_factors.iter().flatten().count();
         let enough = compared > 1 && compared as f64 >= LEAST_SHARE * ln_factors.len() as f64;

@@ -47,7 +47,8 @@ pub(crate) struct Spans {
 impl Spans {
     /// Takes the next frame, holes and codes included: they are what a stretched frame does not keep.
     pub(crate) fn push(&mut self, frame: &Frame) {
-        let mut span = Span { least_dn: f32::INFINITY, largest_dn: f32::NEG_INFINITY, at_largest: 0, place: 0 };
+        let mut span =
+            Span { least_dn: f32::INFINITY, largest_dn: f32::NEG_INFINITY, at_largest: 0, place: 0 };
         for (pixel, &value) in frame.amplitude.values().iter().enumerate() {
             span.least_dn = span.least_dn.min(value);
             if value > span.largest_dn {
@@ -70,7 +71,8 @@ impl Spans {
         let same_least = all(&|span| span.least_dn == first.least_dn) && first.least_dn < largest_dn;
         let coarse = largest_dn <= COARSE && largest_dn > 1.0;
         let few = if coarse { FEW.max((COARSE_SHARE * self.pixels as f64) as usize) } else { FEW };
-        let mostly = |most: usize| 2 * self.spans.iter().filter(|s| s.at_largest <= most).count() > self.spans.len();
+        let mostly =
+            |most: usize| 2 * self.spans.iter().filter(|s| s.at_largest <= most).count() > self.spans.len();
         let wanders = self.spans.windows(2).filter(|pair| pair[0].place != pair[1].place).count();
         let wanders = 4 * wanders >= self.spans.len() && all(&|span| span.at_largest <= ALONE);
         let held = (same_least || !coarse) && common_factor_changes && mostly(few);

@@ -183,7 +183,9 @@ impl Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::ScaledByFrame(spanned) => write!(f, "In this recording, {spanned}. Record the values as the camera delivers them."),
+            Self::ScaledByFrame(spanned) => {
+                write!(f, "In this recording, {spanned}. Record the values as the camera delivers them.")
+            }
             Self::ExposureChanged(course) => write!(f, "In this recording, {course}."),
             Self::TimeRaw => {
                 write!(f, "The amplitude grows in proportion to the integration time: not corrected for it.")

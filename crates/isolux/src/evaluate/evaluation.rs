@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    CoverageStratum, DistanceSlope, FrameToFrame, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv,
-    SigmaCoverage, SnrStratum, ThresholdIou,
+    CoverageStratum, DistanceSlope, FrameToFrame, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome,
+    PixelCv, SigmaCoverage, SnrStratum, ThresholdIou,
 };
 
 /// What an [`Evaluator`](super::Evaluator) found; each figure, or why the recording does not determine it.

@@ -13,6 +13,7 @@ use crate::choice::Choice;
 use crate::denoise::DenoiseRule;
 use crate::frame::Channels;
 use crate::specular::SpecularRule;
+use crate::step_names::TimeStep;
 use crate::terms::DistanceLaw;
 use crate::terms::profile::ProfileGains;
 
@@ -87,7 +88,8 @@ impl Plan {
 
 /// Puts a note before all others: the planned steps are textbook physics and no calibration.
 fn note_textbook(planner: &mut Planner<'_>) {
-    let physics = planner.steps.iter().filter(|step| step.effect != "denoise");
+    let relative = TimeStep::Relative.name();
+    let physics = planner.steps.iter().filter(|step| step.effect != "denoise" && step.term != relative);
     let terms: Vec<&str> = physics.map(|step| step.term).collect();
     if planner.calibration.is_none() && !terms.is_empty() {
         planner.notes.insert(0, Note::Textbook { terms: terms.join(", ") });

@@ -16,7 +16,8 @@ pub enum Factor {
 }
 
 impl Factor {
-    pub(super) const ALL: [Self; 5] = [Self::Time, Self::Exposure, Self::Distance, Self::Profile, Self::Angle];
+    pub(super) const ALL: [Self; 5] =
+        [Self::Time, Self::Exposure, Self::Distance, Self::Profile, Self::Angle];
 
     /// Its name in messages.
     #[must_use]

@@ -31,7 +31,7 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(SceneReport, Vec<SceneWarning>), UnlikeShapes> {
     common_shape(used(scenes).map(|scene| (&*scene.source.recording, scene.shape)))?;
     let mut warnings = about(scenes);
-    let (input, fit) = match solve(settings, scenes) {
+    let (input, fit) = match solve(settings, scenes, &mut warnings) {
         Ok(solved) => solved,
         Err(warning) => {
             warnings.push(warning);
@@ -40,8 +40,7 @@ pub(in crate::calibrate) fn fit(
     };
     let factors = fit.findings.iter().map(|finding| finding.factor);
     let refused = factors.filter_map(|factor| FactorWarning::refused(&fit, factor));
-    let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
-    warnings.extend(shared.into_iter().chain(refused).chain(FactorWarning::uncertain(&fit)).map(SceneWarning::Factor));
+    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(SceneWarning::Factor));
     let fitted = Fitted {
         observations: &input.observations,
         fit: &fit,
@@ -70,6 +69,7 @@ pub(in crate::calibrate) fn fit(
 fn solve(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
+    warnings: &mut Vec<SceneWarning>,
 ) -> Result<(JointInput, JointFit), SceneWarning> {
     let nothing = |reason: JointError| SceneWarning::NothingFitted { reason };
     let input = JointInput::new(settings, scenes)
@@ -81,7 +81,17 @@ fn solve(
     }
     let free = lambert::settle(&input).map_err(nothing)?;
     if !time.is_some_and(|time| time.of_frames) {
-        return Ok((input, free));
+        let Some(shared) = FactorWarning::shared_by_frames(&input.observations, &free) else {
+            return Ok((input, free));
+        };
+        warnings.push(SceneWarning::Factor(shared));
+        if distance.is_none() {
+            return Ok((input, free));
+        }
+        // The stated times are wrong: laws that were fitted with them would be too.
+        let own = input.with_levels_of_frames();
+        let fit = lambert::settle(&own).map_err(nothing)?;
+        return Ok((own, fit));
     }
     let one = JointInput { model: JointModel { time: None, ..input.model }, ..input.clone() };
     let shared = lambert::settle(&one).map_err(nothing)?;

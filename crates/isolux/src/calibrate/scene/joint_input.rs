@@ -26,11 +26,8 @@ impl JointInput {
         let first = recordings.iter().find(|recording| !recording.observations.is_empty())?;
         let places = Places::new(first.shape, first.intrinsics.as_ref());
         let levels = levels(recordings);
-        let mut input = Self {
-            observations: Vec::new(),
-            model: model(settings, recordings, &levels, places),
-            levels,
-        };
+        let mut input =
+            Self { observations: Vec::new(), model: model(settings, recordings, &levels, places), levels };
         let usual = usual_variance(recordings);
         let (mut first_surface, mut first_frame) = (0, 0);
         for recording in recordings {
@@ -54,6 +51,19 @@ impl JointInput {
             (first_surface, first_frame) = (first_surface + surfaces, first_frame + frames);
         }
         Some(input)
+    }
+
+    /// The same where nothing is known of the exposures: each frame has a level of its own.
+    pub(super) fn with_levels_of_frames(&self) -> Self {
+        let levels = Levels::new(self.observations.iter().map(|seen| (f64::NAN, seen.frame)));
+        let model = JointModel { time: levels.model(f64::NAN), ..self.model };
+        let mut observations = self.observations.clone();
+        for seen in &mut observations {
+            let level = levels.of(f64::NAN, seen.frame);
+            seen.time = level.unwrap_or(0);
+            seen.weight *= f32::from(u8::from(level.is_some()));
+        }
+        Self { observations, model, levels }
     }
 }
 

@@ -56,7 +56,8 @@ impl SceneWarning {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
-            Self::Factor(factor @ FactorWarning::SharedByFrames { .. }) => factor.severity(),
+            // Laws are fitted without the stated times then.
+            Self::Factor(FactorWarning::SharedByFrames { .. }) => Severity::Doubt,
             // What a scene does not determine is left out.
             _ => Severity::Note,
         }

@@ -29,21 +29,28 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
     let mut warnings = Vec::new();
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
-    let mut first = joint::solve(&input.observations, &input.model)?;
-    if input.model.time.is_some_and(|time| time.of_frames) {
-        let one = JointModel { time: None, ..input.model };
-        let shared = joint::solve(&input.observations, &one)?;
-        if show_one_exposure(&shared, &first) {
-            (input.model, first) = (one, shared);
-        }
-    }
+    // Unknown exposures are left for later: glossy materials would be taken for them.
+    let of_frames = input.model.time.filter(|time| time.of_frames);
+    input.model.time = input.model.time.filter(|time| !time.of_frames);
+    let first = joint::solve(&input.observations, &input.model)?;
     input.expect(targets, &first.residuals);
     warnings.extend(targets.iter().filter_map(curved));
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
+    if let Some(time) = of_frames {
+        let shared = joint::solve(&input.observations, &input.model)?;
+        let own = JointModel { time: Some(time), ..input.model };
+        if !show_one_exposure(&shared, &joint::solve(&input.observations, &own)?) {
+            input.model = own;
+        }
+    }
     input.model.smoothness = smoothness(&input);
     let fit = determined(&input.observations, input.model, &mut warnings)?;
+    if of_frames.is_none() {
+        let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
+        warnings.extend(shared.map(TargetWarning::Factor));
+    }
     for (surface, used) in surfaces.iter_mut().enumerate() {
         let mine = input.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
         used.outliers = mine.filter(|(_, weight)| **weight == 0.0).count();
@@ -103,8 +110,7 @@ fn determined(
     }
     let others = [Factor::Time, Factor::Distance, Factor::Profile];
     let refused = others.into_iter().filter_map(|factor| FactorWarning::refused(&fit, factor));
-    let shared = FactorWarning::shared_by_frames(observations, &fit);
-    warnings.extend(shared.into_iter().chain(refused).chain(FactorWarning::uncertain(&fit)).map(TargetWarning::Factor));
+    warnings.extend(refused.chain(FactorWarning::uncertain(&fit)).map(TargetWarning::Factor));
     Ok(fit)
 }
 

@@ -163,7 +163,11 @@ fn levels(targets: &[TargetWindows]) -> Levels {
     let of = |target: &TargetWindows| {
         let first = first_frame;
         first_frame += frames(target);
-        target.windows.iter().map(move |window| (f64::from(window.time_us), first + window.frame)).collect::<Vec<_>>()
+        target
+            .windows
+            .iter()
+            .map(move |window| (f64::from(window.time_us), first + window.frame))
+            .collect::<Vec<_>>()
     };
     Levels::new(targets.iter().flat_map(of))
 }
