@@ -1,6 +1,7 @@
 //! Which observations share an exposure: those of one integration time, and those of one frame whose time is unknown.
 
 use super::joint::{JointFit, TimeModel};
+use super::severity::POOR_SHARE;
 use crate::numerics::statistics::median;
 
 /// Levels of frames, at most. Of longer recordings, frames are taken at equal steps.
@@ -82,6 +83,15 @@ pub(super) fn show_one_exposure(shared: &JointFit, free: &JointFit) -> bool {
     let error = other.standard_error;
     let agree = (one.exponent - other.exponent).abs() <= STANDARD_ERRORS * error;
     error <= LARGEST_ERROR && agree && shared.sigma <= LARGEST_GROWTH * free.sigma
+}
+
+/// Whether one exposure for all frames gives the law of light, about d⁻², and frames that agree. An automatic exposure
+/// flattens the law, or scatters the frames.
+pub(super) fn look_like_one_exposure(shared: &JointFit, residuals: impl Iterator<Item = (u32, f64)>) -> bool {
+    /// An automatic exposure that takes less out of d⁻² bends the law by no more than what is refused elsewhere.
+    const LARGEST_EXPONENT: f64 = 0.2;
+    let lawful = shared.fall.is_some_and(|fall| fall.exponent.abs() <= LARGEST_EXPONENT);
+    lawful && shared_by_frames(residuals).is_some_and(|found| found.spread <= POOR_SHARE)
 }
 
 /// What the residuals of a frame share.

@@ -11,7 +11,7 @@ use super::{TargetError, TargetWarning, TargetWindows, flatness, gloss};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
-use crate::calibrate::levels::show_one_exposure;
+use crate::calibrate::levels::{look_like_one_exposure, show_one_exposure};
 use crate::calibration::{Calibration, Terms};
 use crate::terms::angle::LAMBERT;
 
@@ -41,7 +41,10 @@ pub(in crate::calibrate) fn fit(
     if let Some(time) = of_frames {
         let shared = joint::solve(&input.observations, &input.model)?;
         let own = JointModel { time: Some(time), ..input.model };
-        if !show_one_exposure(&shared, &joint::solve(&input.observations, &own)?) {
+        let residuals =
+            input.observations.iter().map(|seen| seen.frame).zip(shared.residuals.iter().copied());
+        let one = look_like_one_exposure(&shared, residuals.filter(|(_, residual)| residual.is_finite()));
+        if !one && !show_one_exposure(&shared, &joint::solve(&input.observations, &own)?) {
             input.model = own;
         }
     }
