@@ -106,7 +106,7 @@ pub(super) struct SharedByFrames {
 /// The factors that the residuals of frames share; `None` with too few frames to tell.
 pub(super) fn shared_by_frames(residuals: impl Iterator<Item = (u32, f64)>) -> Option<SharedByFrames> {
     /// Observations that tell the factor of a frame, and frames that tell their spread.
-    const LEAST: [usize; 2] = [20, 5];
+    const LEAST: [usize; 2] = [8, 5];
     let mut residuals: Vec<(u32, f64)> = residuals.filter(|(_, residual)| residual.is_finite()).collect();
     residuals.sort_by_key(|(frame, _)| *frame);
     let frames = residuals.chunk_by(|a, b| a.0 == b.0).filter(|frame| frame.len() >= LEAST[0]);
