@@ -54,6 +54,13 @@ fn words(advice: &Advice) -> String {
         Advice::SkipFrames => "drop the first ones with --skip-frames",
         Advice::Window => "use another --window",
         Advice::AcceptPoorFit => "record again, or take it as it is with --accept-poor-fit",
+        Advice::RecordUnscaledValues => {
+            "record the values as the camera delivers them, such as its 16 bits, not images that were stretched for viewing"
+        }
+        Advice::RecordTimes => {
+            "record `integration_time_us` with each frame, or fix the exposure; --time relative takes the factor out of what \
+             stands still"
+        }
         _ => "",
     };
     fixed.to_owned()
@@ -87,6 +94,7 @@ fn field(field: &RecordingField) -> String {
         RecordingField::PhaseConvention(PhaseConvention { order, reversed }) => {
             format!("\"phase_convention\": {{\"order\": {order:?}, \"reversed\": {reversed}}}")
         }
+        RecordingField::IntegrationTime => "\"integration_time_us\": its value in µs".to_owned(),
         _ => return String::new(),
     };
     format!("write {json} into its recording.json")

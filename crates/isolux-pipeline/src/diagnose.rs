@@ -2,6 +2,7 @@
 
 use isolux::Channels;
 use isolux::diagnose::{DiagnoseSettings, Diagnoser, Diagnosis, Finding};
+use isolux::inspect::Suspicion;
 
 use crate::error::PipelineError;
 use crate::frames;
@@ -37,6 +38,19 @@ pub fn diagnose(source: &mut dyn FrameSource, observer: &dyn Observer) -> Result
         pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
     })?;
     let mut diagnosis = diagnoser.finish();
-    diagnosis.findings.splice(0..0, suspicions.into_iter().map(Finding::Suspicion));
+    diagnosis.findings.splice(0..0, suspicions.into_iter().filter(is_quick_only).map(Finding::Suspicion));
     Ok(diagnosis)
+}
+
+/// True for what all frames do not tell better than a few.
+fn is_quick_only(suspicion: &Suspicion) -> bool {
+    !matches!(
+        suspicion,
+        Suspicion::ScaledByFrame(_)
+            | Suspicion::ExposureChanged(_)
+            | Suspicion::TimeCorrected { .. }
+            | Suspicion::TimePartly { .. }
+            | Suspicion::DistanceCorrected { .. }
+            | Suspicion::AmplitudeClips { .. }
+    )
 }

@@ -44,9 +44,10 @@ pub(crate) fn read_alone(
 ) -> Result<(), PipelineError> {
     let name = source.facts().name;
     let wanted = wanted | stream.standardizer().needed();
-    stream.reset();
+    let first = index.saturating_sub(stream.standardizer().frames_before());
+    stream.continue_at(first);
     let mut prepared = Prepared::default();
-    for earlier in index.saturating_sub(stream.standardizer().frames_before())..index {
+    for earlier in first..index {
         read_present(source, earlier, wanted, frame)?;
         let taken = stream.prepare(frame, &mut prepared);
         taken.map_err(|error| PipelineError::frame(&name, earlier)(error.into()))?;

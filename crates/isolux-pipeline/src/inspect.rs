@@ -50,7 +50,7 @@ pub fn inspect(
             let fits = |pushed: Result<(), ShapeError>| {
                 pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
             };
-            fits(inspector.push(index, &frame))?;
+            fits(inspector.push(&frame))?;
             if stored.iter().any(|channel| channel.name == DISTANCE) {
                 source.read_plane(DISTANCE, index, &mut distances)?;
                 fits(inspector.push_stored_distances(&frame, &distances))?;
@@ -91,7 +91,10 @@ fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
         phase_convention: info.phase_convention.unwrap_or_default(),
         distance_from_phases: has("phase_samples") && !has(DISTANCE),
         unwrapped_range_m: frequency.filter(|_| unwrapped).map(|frequency| frequency.unambiguous_range_m()),
-        principal_point: facts.lens().and_then(|lens| lens.principal_point()),
+        principal_point: facts
+            .lens()
+            .and_then(|lens| lens.principal_point())
+            .map(|[row, column]| [column, row]),
         // With its input, the amplitude is that of the input.
         standardized: info.other.contains_key(PROVENANCE) && !has(VALUES),
     }

@@ -17,6 +17,8 @@ pub enum Work {
     EstimatingNoise,
     /// Estimating the ambient light of a recording.
     EstimatingAmbientLight,
+    /// Comparing all frames of a recording by what stands still.
+    ComparingFrames,
     /// Evaluating a recording before and after standardization.
     Evaluating,
     /// Diagnosing a recording.
@@ -42,6 +44,7 @@ impl fmt::Display for Work {
             Self::ReadingTimes => "reading times",
             Self::EstimatingNoise => "estimating the noise",
             Self::EstimatingAmbientLight => "estimating the ambient light",
+            Self::ComparingFrames => "comparing frames",
             Self::Evaluating => "evaluating",
             Self::Diagnosing => "diagnosing",
             Self::ExposureSweep => "exposure sweep",

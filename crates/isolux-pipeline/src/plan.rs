@@ -2,11 +2,12 @@
 
 use isolux::calibrate::NoiseSurvey;
 use isolux::inspect::Suspicion;
-use isolux::standardize::SigmaStep;
+use isolux::standardize::{SigmaStep, TimeStep};
 use isolux::terms::NoiseModel;
 use isolux::{Calibration, Channels, Choice, RecordingTraits, Standardizer};
 
 mod light;
+mod relative;
 
 use crate::error::PipelineError;
 use crate::frames;
@@ -15,9 +16,10 @@ use crate::observer::{Observer, Work};
 use crate::remark::Remark;
 use crate::source::FrameSource;
 
-/// Plans the chain for a recording. Some frames are looked at for what contradicts its description. Where the standard deviation is required and the noise is unknown, the
-/// recording is read once to estimate it; where the response needs the ambient light, some frames are read. The
-/// observer receives what was found and the notes of the plan as remarks.
+/// Plans the chain for a recording. Some frames are looked at for what contradicts its description. Where the
+/// standard deviation is required and the noise is unknown, the recording is read once to estimate it; where frames are to
+/// be scaled relative to each other, to compare them; where the response needs the ambient light, some frames are read.
+/// The observer receives what was found and the notes of the plan as remarks.
 ///
 /// # Errors
 /// [`PipelineError::Plan`] when the choice cannot be carried out, [`PipelineError::NoNoise`] and [`PipelineError::TooDark`], and those of reading.
@@ -53,6 +55,9 @@ pub fn plan_with(
         && let Some(response) = Standardizer::wants_ambient_light(&choice, calibration, &traits)
     {
         traits.ambient_light = light::estimate(response, source, observer)?;
+    }
+    if choice.time == Some(TimeStep::Relative) && traits.relative_exposure.is_none() {
+        traits.relative_exposure = relative::compare(source, observer)?;
     }
     let standardizer = Standardizer::plan(&choice, calibration, traits)?;
     standardizer.notes().iter().for_each(|note| observer.remark(Remark::Plan(note.clone())));

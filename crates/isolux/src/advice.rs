@@ -52,6 +52,8 @@ pub enum RecordingField {
     },
     /// Order and sign of the phase samples.
     PhaseConvention(PhaseConvention),
+    /// The integration time of all frames, where it was constant.
+    IntegrationTime,
 }
 
 /// One thing to do.
@@ -103,6 +105,10 @@ pub enum Advice {
     Window,
     /// Take the calibration as it is, although it is poor.
     AcceptPoorFit,
+    /// Record the values as the camera delivers them, before any stretching of single frames.
+    RecordUnscaledValues,
+    /// Record the integration time of each frame, fix the exposure, or take the factor that still pixels share out.
+    RecordTimes,
     /// State this in the description of the recording.
     WriteField(RecordingField),
     /// Standardize the recording that this one was made from.

@@ -54,6 +54,7 @@ pub mod advice;
 pub mod calibrate;
 pub mod calibration;
 mod choice;
+mod common_factor;
 pub mod denoise;
 pub mod diagnose;
 pub mod evaluate;
@@ -73,6 +74,7 @@ pub mod terms;
 pub use advice::{Advice, RecordingField, RecordingKind};
 pub use calibration::{Calibration, Reference};
 pub use choice::Choice;
+pub use common_factor::{ExposureClaim, ExposureCourse, SpannedFrames};
 pub use denoise::DenoiseRule;
 pub use frame::{
     Channels, Distortion, Frame, IntegrationTime, Intrinsics, Lens, LensError, PhaseConvention, PixelFlags,

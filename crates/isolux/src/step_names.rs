@@ -24,6 +24,8 @@ named! {
         Response = "response",
         /// `t_ref / t`.
         Linear = "linear",
+        /// The factor that all still pixels of a frame share: relative to the other frames, without integration times.
+        Relative = "relative",
         /// No correction of the integration time.
         None = "none",
     }

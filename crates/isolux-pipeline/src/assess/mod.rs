@@ -54,7 +54,7 @@ pub fn assess(
         frames::read_alone(source, index, wanted, &mut evaluation.stream, &mut frame)?;
         let taken = evaluation.take(&frame, |evaluator, frame| evaluator.set_reference(frame));
         taken.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))?;
-        evaluation.stream.reset();
+        evaluation.stream.continue_at(0);
     }
     let (mut motion, mut last_us) = (MotionWatch::default(), None);
     frames::for_each(source, wanted, Work::Evaluating, observer, |index, frame| {

@@ -4,8 +4,11 @@ use std::fmt;
 use std::ops::Range;
 
 use super::joint::{self, Factor, Finding, JointFit, JointModel, Observation, Refusal};
-use crate::advice::Advice;
+use super::levels::{self, SharedByFrames};
+use super::severity::{DOUBTFUL_SHARE, POOR_SHARE, Severity};
+use crate::advice::{Advice, RecordingField};
 use crate::numerics::robust::TUKEY_CUTOFF;
+use crate::numerics::statistics::median;
 use crate::terms::{Angle, FitQuality, Profile, Source, Spline, root_mean_square};
 
 /// Cells of the image whose ln v has a larger predicted standard error are outside the profile's support.
@@ -29,15 +32,34 @@ pub(super) fn held_out(observations: &[Observation], model: &JointModel, folds: 
         let Ok(fit) = joint::solve(&training, model) else { continue };
         // Outliers of the whole fit do not test the law; their share is reported separately.
         let cutoff = TUKEY_CUTOFF * fit.sigma;
-        let errors = tested.iter().map(|&index| {
+        let error = |&index: &usize| (observations[index].frame, fit.residuals[index]);
+        let mut left: Vec<(u32, f64)> = tested.iter().map(error).collect();
+        if model.time.is_some_and(|time| time.of_frames) {
+            take_out_levels(&mut left);
+        }
+        let errors = tested.iter().zip(left).map(|(&index, (_, error))| {
             let scale = f64::from(observations[index].weight).sqrt();
-            (fit.residuals[index], fit.residuals[index].abs() * scale < cutoff)
+            (error, error.abs() * scale < cutoff)
         });
         for (error, _) in errors.filter(|(error, inside)| error.is_finite() && *inside) {
             squares = (squares.0 + error.exp_m1().powi(2), squares.1 + 1.0);
         }
     }
     (squares.1 > 0.0).then(|| (squares.0 / squares.1).sqrt())
+}
+
+/// Nothing is known of the exposure of a frame that was left out: its median error is that.
+fn take_out_levels(errors: &mut [(u32, f64)]) {
+    let mut order: Vec<usize> = (0..errors.len()).collect();
+    order.sort_by_key(|&index| errors[index].0);
+    for frame in
+        order.chunk_by(|a, b| errors[*a].0 == errors[*b].0).map(<[usize]>::to_vec).collect::<Vec<_>>()
+    {
+        let mut finite: Vec<f64> =
+            frame.iter().map(|&i| errors[i].1).filter(|error| error.is_finite()).collect();
+        let level = median(&mut finite).unwrap_or(0.0);
+        frame.iter().for_each(|&index| errors[index].1 -= level);
+    }
 }
 
 /// A factor of the joint model that does not become a term.
@@ -60,6 +82,13 @@ pub enum FactorWarning {
         /// Standard error of its curve, or for the angle of its effect at 60°.
         standard_error: f64,
     },
+    /// The residuals of a frame share one sign: its exposure was not what the recording says.
+    SharedByFrames {
+        /// Factor of the darkest and of the brightest frame.
+        range: [f64; 2],
+        /// Relative standard deviation of the frames' factors.
+        spread: f64,
+    },
     /// A distance law whose observations do not cover the reference distance.
     ReferenceNotSeen {
         /// Reference, m.
@@ -74,6 +103,22 @@ impl FactorWarning {
     pub(super) fn refused(fit: &JointFit, factor: Factor) -> Option<Self> {
         let reason = fit.refusal(factor)?.clone();
         Some(Self::Refused { reason, unknowns: fit.unknowns, rank: fit.rank })
+    }
+
+    /// The warning about frames whose residuals share one sign, if they do.
+    pub(super) fn shared_by_frames(observations: &[Observation], fit: &JointFit) -> Option<Self> {
+        let residuals = observations.iter().map(|seen| seen.frame).zip(fit.residuals.iter().copied());
+        let SharedByFrames { range, spread } = levels::shared_by_frames(residuals)?;
+        (spread > DOUBTFUL_SHARE).then_some(Self::SharedByFrames { range, spread })
+    }
+
+    /// How much it weighs.
+    pub(super) fn severity(&self) -> Severity {
+        match self {
+            Self::SharedByFrames { spread, .. } if *spread > POOR_SHARE => Severity::Poor,
+            Self::SharedByFrames { .. } | Self::Uncertain { .. } => Severity::Doubt,
+            Self::Refused { .. } | Self::ReferenceNotSeen { .. } => Severity::Note,
+        }
     }
 
     /// The warnings about factors that are known badly, but not refused.
@@ -91,6 +136,12 @@ impl FactorWarning {
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
+            Self::Refused { reason: Refusal::Confounded { with, .. }, .. }
+                if with.contains(&Factor::Exposure) =>
+            {
+                Some(Advice::WriteField(RecordingField::IntegrationTime))
+            }
+            Self::SharedByFrames { .. } => Some(Advice::RecordTimes),
             Self::Refused { .. } | Self::Uncertain { .. } => None,
             Self::ReferenceNotSeen { .. } => Some(Advice::ReferenceDistance { distance_m: None }),
         }
@@ -109,6 +160,13 @@ impl fmt::Display for FactorWarning {
                  in other poses",
                 factor.name(),
                 100.0 * standard_error
+            ),
+            Self::SharedByFrames { range: [least, largest], spread } => write!(
+                f,
+                "all that is seen in a frame shares a factor, {least:.2} to {largest:.2} from frame to frame ({:.1} % on \
+                 average), which the integration times that the recording states do not explain: the exposure changed \
+                 unrecorded, or frames were scaled one by one",
+                100.0 * spread
             ),
             Self::ReferenceNotSeen { reference_m, seen_m: [min_m, max_m] } => write!(
                 f,

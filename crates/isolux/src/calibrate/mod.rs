@@ -24,6 +24,7 @@ mod fit;
 mod grouped_noise;
 pub mod joint;
 mod lag;
+mod levels;
 mod measure_error;
 mod measurements;
 mod report;

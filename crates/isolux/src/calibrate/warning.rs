@@ -34,8 +34,7 @@ impl FitWarning {
             Self::Exposure(warning) => warning.severity(),
             Self::Distance(warning) => warning.severity(),
             Self::Target(warning) => warning.severity(),
-            // What a scene does not determine is left out.
-            Self::Scene(_) => Severity::Note,
+            Self::Scene(warning) => warning.severity(),
             Self::Residual(found) => found.severity(),
         }
     }

@@ -30,6 +30,7 @@ impl Diagnoser {
             Some(_) => self.panel.finish(clip_dn, self.seen.time_per_pixel),
         };
         let material = Material::fit(&all, &labelled, &vendor_scaling);
+        let exposure_changed = self.course.unexplained();
         let mut diagnosis = Diagnosis {
             frames: self.frames,
             findings: Vec::new(),
@@ -40,6 +41,8 @@ impl Diagnoser {
             phase_samples,
             still_pixels,
             material,
+            exposure_changed,
+            scaled_by_frame: self.spans.stretched(exposure_changed.is_some()),
             values,
         };
         diagnosis.findings = rules::findings(&diagnosis);

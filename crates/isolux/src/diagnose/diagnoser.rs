@@ -1,8 +1,9 @@
 //! Frames are looked at one by one, and a sample of bounded size is kept.
 
-use super::panel::{Look, Panel};
+use super::panel::{self, Panel};
 use super::sample::{Observed, Sample};
 use super::values::ValueMeter;
+use crate::common_factor::{Course, Grid, Look, Spans, Times};
 use crate::frame::{Frame, IntegrationTime, PixelFlags, Shape, ShapeError, phase};
 
 /// Blocks along each side of the image, the clusters of pixels.
@@ -32,6 +33,9 @@ pub struct Diagnoser {
     pub(super) labelled: Sample,
     pub(super) panel: Panel,
     pub(super) seen: Seen,
+    grid: Grid,
+    pub(super) course: Course,
+    pub(super) spans: Spans,
 }
 
 /// Which channels were there.
@@ -56,6 +60,9 @@ impl Diagnoser {
             labelled: Sample::default(),
             panel: Panel::new(shape.pixels(), |index| block(shape, index)),
             seen: Seen::default(),
+            grid: Grid::new(shape),
+            course: Course::new(Grid::new(shape), Times::Explain),
+            spans: Spans::default(),
             settings,
         }
     }
@@ -68,6 +75,8 @@ impl Diagnoser {
         frame.amplitude.expect_shape("amplitude", self.shape)?;
         frame.check_shapes()?;
         self.see(frame);
+        self.course.push(Look::of_frame(self.grid, frame));
+        self.spans.push(frame);
         for index in 0..self.shape.pixels() {
             let (amplitude, flags) = (frame.amplitude.values()[index], frame.flags.values()[index]);
             self.values.push(amplitude, flags);
@@ -78,7 +87,7 @@ impl Diagnoser {
         }
         let usable = |index: usize| !frame.flags.values()[index].intersects(UNUSABLE);
         self.panel.push(|index| {
-            usable(index).then(|| Look {
+            usable(index).then(|| panel::Look {
                 time_us: time_us(frame, index),
                 amplitude: frame.amplitude.values()[index],
                 distance_m: distance_m(frame, index),

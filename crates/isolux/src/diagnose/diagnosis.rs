@@ -9,6 +9,7 @@ use super::scaling::Scaling;
 use super::still::StillPixels;
 use super::unavailable::{Outcome, Unavailable};
 use super::values::Values;
+use crate::common_factor::{ExposureCourse, SpannedFrames};
 
 /// The diagnosis of a recording: what is in its amplitude, what is gone, and what cannot be told.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,6 +38,10 @@ pub struct Diagnosis {
     pub still_pixels: Outcome<StillPixels>,
     /// Pixels of one material.
     pub material: Material,
+    /// A factor that all still pixels share from frame to frame, and that no recorded time explains.
+    pub exposure_changed: Option<ExposureCourse>,
+    /// Frames that all span exactly the same values.
+    pub scaled_by_frame: Option<SpannedFrames>,
     /// The values that the amplitude takes; `None` where no pixel is valid.
     pub values: Option<Values>,
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::effect::{Evidence, State};
 use super::vendor::VendorFinding;
 use crate::advice::Advice;
+use crate::common_factor::{ExposureCourse, SpannedFrames};
 use crate::inspect::Suspicion;
 
 /// One statement about the recording; [`Display`](fmt::Display) gives a sentence.
@@ -14,6 +15,10 @@ use crate::inspect::Suspicion;
 #[serde(tag = "finding", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
+    /// Frames were scaled one by one: they are not comparable.
+    ScaledByFrame(SpannedFrames),
+    /// All still pixels share a factor from frame to frame that no recorded time explains.
+    ExposureChanged(ExposureCourse),
     /// The amplitude grows with t¹: not corrected for the integration time.
     TimeRaw,
     /// The amplitude does not depend on t: corrected for the integration time.
@@ -137,7 +142,9 @@ impl Finding {
     fn is_about_corrections(&self) -> bool {
         !matches!(
             self,
-            Self::Clipped { .. }
+            Self::ScaledByFrame(_)
+                | Self::ExposureChanged(_)
+                | Self::Clipped { .. }
                 | Self::Saturated { .. }
                 | Self::Coarse { .. }
                 | Self::Vendor(_)
@@ -157,6 +164,10 @@ impl Finding {
     /// A few words for the headline; `None` for findings that it states otherwise.
     fn short(&self) -> Option<String> {
         Some(match self {
+            Self::ScaledByFrame(_) => "scaled frame by frame".to_owned(),
+            Self::ExposureChanged(ExposureCourse { least, largest, .. }) => {
+                format!("a common factor of {least:.2} to {largest:.2} from frame to frame")
+            }
             Self::TimeRaw
             | Self::TimeCorrected
             | Self::DistanceRaw { .. }
@@ -187,6 +198,10 @@ impl Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::ScaledByFrame(spanned) => {
+                write!(f, "In this recording, {spanned}. Record the values as the camera delivers them.")
+            }
+            Self::ExposureChanged(course) => write!(f, "In this recording, {course}."),
             Self::TimeRaw => {
                 write!(f, "The amplitude grows in proportion to the integration time: not corrected for it.")
             }

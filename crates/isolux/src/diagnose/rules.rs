@@ -22,6 +22,9 @@ const CURVE: f64 = 0.7;
 /// All findings that follow from the diagnosis.
 pub(super) fn findings(diagnosis: &Diagnosis) -> Vec<Finding> {
     let mut findings = Vec::new();
+    // Frames that are not comparable make every other finding doubtful. A stretch explains the factor.
+    let stretched = diagnosis.scaled_by_frame.map(Finding::ScaledByFrame);
+    findings.extend(stretched.or(diagnosis.exposure_changed.map(Finding::ExposureChanged)));
     let gamma = diagnosis.phase_samples.as_ref().ok().and_then(gamma_by_phase_samples);
     let distance = diagnosis.distance.as_ref().ok();
     findings.extend(gamma.clone());

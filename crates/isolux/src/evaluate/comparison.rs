@@ -97,6 +97,9 @@ impl Comparison {
             self.row(&format!("image {cv}"), "ratio", Lower, |e| {
                 e.image_cv.map(|cv| (cv.cv, cv.valid_fraction))
             }),
+            self.row("frame-to-frame variation of still pixels", "ratio", Lower, |e| {
+                e.frame_to_frame.map(|found| (found.cv, found.valid_fraction))
+            }),
             self.row(self.slope_name(), "exponent", TowardsZero, |e| {
                 e.distance_slope.map(|slope| (slope.slope, slope.valid_fraction))
             }),

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    CoverageStratum, DistanceSlope, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome, PixelCv,
-    SigmaCoverage, SnrStratum, ThresholdIou,
+    CoverageStratum, DistanceSlope, FrameToFrame, HistogramDistance, ImageCv, Noise, OtsuShift, Outcome,
+    PixelCv, SigmaCoverage, SnrStratum, ThresholdIou,
 };
 
 /// What an [`Evaluator`](super::Evaluator) found; each figure, or why the recording does not determine it.
@@ -27,6 +27,9 @@ pub struct Evaluation {
     /// Coefficient of variation of the image's mean over integration times.
     #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub image_cv: Outcome<ImageCv>,
+    /// Variation of the level of still pixels from frame to frame.
+    #[serde(serialize_with = "crate::outcome_json::serialize")]
+    pub frame_to_frame: Outcome<FrameToFrame>,
     /// Slope of ln A on ln d.
     #[serde(serialize_with = "crate::outcome_json::serialize")]
     pub distance_slope: Outcome<DistanceSlope>,

@@ -2,6 +2,7 @@
 
 use super::evaluation::Evaluation;
 use super::fraction::fraction;
+use super::frame_to_frame::FrameToFrameMeter;
 use super::input::{EvaluationFrame, Times};
 use super::noise::NoiseMeter;
 use super::outcome::{Outcome, Unavailable};
@@ -23,6 +24,7 @@ pub struct Evaluator {
     valid_values: u64,
     times: TimesSeen,
     pixel_runs: PixelRuns,
+    frame_to_frame: FrameToFrameMeter,
     noise: NoiseMeter,
     coverage: Option<CoverageMeter>,
     slope: SlopeSample,
@@ -41,6 +43,7 @@ impl Evaluator {
             valid_values: 0,
             times: TimesSeen::new(),
             pixel_runs: PixelRuns::new(pixels, settings.same_time_ratio),
+            frame_to_frame: FrameToFrameMeter::new(shape),
             noise: NoiseMeter::new(shape, settings.same_time_ratio),
             coverage: None,
             slope: SlopeSample::new(settings.sample_capacity()),
@@ -74,6 +77,7 @@ impl Evaluator {
         let times = Times::of(frame.integration_time_us);
         self.times.push(&self.usable, times);
         self.pixel_runs.push(&self.usable, times);
+        self.frame_to_frame.push(&self.usable, frame);
         self.noise.push(&self.usable, times);
         self.slope.push(&self.usable, frame, times);
         if let Some(sigma) = frame.sigma {
@@ -113,6 +117,7 @@ impl Evaluator {
             pixel_cv,
             pixel_cv_by_snr: pixel_cv.and_then(|_| snr.as_ref().map(strata).map_err(|reason| *reason)),
             image_cv: compared.and_then(ReferenceComparison::image_cv),
+            frame_to_frame: self.require_valid().and_then(|()| self.frame_to_frame.finish()),
             distance_slope: self.require_valid().and_then(|()| self.slope.finish(&self.settings)),
             threshold_iou: compared.and_then(ReferenceComparison::threshold_iou),
             otsu_shift: compared.and_then(ReferenceComparison::otsu_shift),

@@ -38,6 +38,9 @@ pub enum Unavailable {
     /// No pixel reaches the threshold, neither in the reference nor in any other frame.
     #[error("no pixel lies above the threshold in any compared frame")]
     EmptyMasks,
+    /// No two frames share enough pixels whose distance stayed.
+    #[error("no two frames show enough of the same surfaces at the same distances in the same pixels")]
+    NothingStandsStill,
     /// There is no distance channel.
     #[error("there is no distance channel")]
     NoDistance,

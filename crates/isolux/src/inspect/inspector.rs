@@ -3,6 +3,7 @@
 use super::claims::Claims;
 use super::dark::Dark;
 use super::exponents::Exponents;
+use super::exposure::Exposures;
 use super::extreme::{Extreme, Kind, largest, smallest};
 use super::phase;
 use super::suspicion::Suspicion;
@@ -28,6 +29,7 @@ pub struct Inspector {
     times: Times,
     dark: Dark,
     exponents: Exponents,
+    exposures: Exposures,
     phases: phase::Sample,
 }
 
@@ -44,19 +46,18 @@ impl Inspector {
             times: Times::default(),
             dark: Dark::default(),
             exponents: Exponents::default(),
+            exposures: Exposures::new(shape),
             phases: phase::Sample::default(),
         }
     }
 
-    /// Takes in frame `index` of the recording. Frames come in ascending order and may be left out; neighbours show
-    /// the noise.
+    /// Takes in a frame of the recording. Frames come in ascending order; some may be left out.
     ///
     /// # Errors
     /// [`ShapeError::Mismatch`] when a plane is not of the inspector's shape; the frame then does not count.
-    pub fn push(&mut self, index: usize, frame: &Frame) -> Result<(), ShapeError> {
+    pub fn push(&mut self, frame: &Frame) -> Result<(), ShapeError> {
         frame.amplitude.expect_shape("amplitude", self.shape)?;
         frame.check_shapes()?;
-        let _ = index;
         let stride = self.stride();
         let amplitudes = frame.amplitude.values().iter().zip(frame.flags.values()).step_by(stride);
         let valid = amplitudes.filter(|(_, flags)| !flags.contains(PixelFlags::INVALID));
@@ -68,6 +69,7 @@ impl Inspector {
         self.times.push(frame, stride);
         self.dark.push(frame, stride);
         self.exponents.push(frame, stride);
+        self.exposures.push(frame);
         self.phases.push(frame, &self.claims);
         Ok(())
     }
@@ -106,7 +108,12 @@ impl Inspector {
         found.extend(codes.map(of_distances));
         found.extend(self.phases.fault(&self.claims).map(Suspicion::PhaseConvention));
         found.extend(self.clipped_bins());
-        found.extend(self.exponents.suspicions());
+        let exposures = self.exposures.finish();
+        // Exponents of frames that were scaled one by one are those of the scaling.
+        if exposures.is_none() {
+            found.extend(self.exponents.suspicions());
+        }
+        found.extend(exposures);
         found.extend(lens::suspicion(self.claims.principal_point, self.shape));
         found.extend(self.dark.suspicion());
         found

@@ -19,7 +19,7 @@
 //! frame.amplitude = Plane::from_fn(shape, |row, column| if row == 5 { 65535.0 } else { value(row, column) });
 //! frame.flag_amplitude(None);
 //! let mut inspector = Inspector::new(shape, Claims::default());
-//! inspector.push(0, &frame)?;
+//! inspector.push(&frame)?;
 //! assert!(matches!(inspector.finish()[..], [Suspicion::AmplitudeCode { value_dn: 65535.0, .. }]));
 //! # Ok::<(), isolux::ShapeError>(())
 //! ```
@@ -29,6 +29,7 @@ mod clip;
 mod dark;
 mod distances;
 mod exponents;
+mod exposure;
 mod extreme;
 mod inspector;
 mod lens;

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::phase::PhaseFault;
 use crate::advice::{Advice, RecordingField};
+use crate::common_factor::{ExposureCourse, SpannedFrames};
 use crate::standardize::AlreadyCorrected;
 
 /// Something about a recording that is probably not as it says. [`Display`](fmt::Display) says what was found;
@@ -110,6 +111,10 @@ pub enum Suspicion {
         /// True where they clip at the negative value too.
         both_signs: bool,
     },
+    /// Every frame spans exactly the same values: frames were scaled one by one.
+    ScaledByFrame(SpannedFrames),
+    /// All still pixels share a factor from frame to frame that no recorded time explains.
+    ExposureChanged(ExposureCourse),
 }
 
 impl Suspicion {
@@ -139,6 +144,8 @@ impl Suspicion {
             Self::TimePartly { .. } => "a gamma curve or a partial correction",
             Self::DistanceCorrected { .. } => "corrected for the distance",
             Self::PrincipalPoint { .. } => "intrinsics of another resolution",
+            Self::ScaledByFrame(_) => "frames scaled one by one",
+            Self::ExposureChanged(_) => "an exposure that changed unrecorded",
             Self::Standardized => "standardized already",
             Self::TooDark { .. } => "nothing but noise",
         }
@@ -165,6 +172,8 @@ impl Suspicion {
             Self::TimeCorrected { .. } | Self::TimePartly { .. } | Self::DistanceCorrected { .. } => {
                 return Some(Advice::Diagnose);
             }
+            Self::ScaledByFrame(_) => return Some(Advice::RecordUnscaledValues),
+            Self::ExposureChanged(_) => return Some(Advice::RecordTimes),
             Self::Standardized => return Some(Advice::TakeOriginal),
             Self::TooDark { .. } => return Some(Advice::RecordBrighter),
         };
@@ -243,6 +252,8 @@ impl fmt::Display for Suspicion {
                 100.0 * share,
                 if *both_signs { "±" } else { "" }
             ),
+            Self::ScaledByFrame(spanned) => spanned.fmt(f),
+            Self::ExposureChanged(course) => course.fmt(f),
         }
     }
 }

@@ -61,7 +61,7 @@ pub(super) fn apply(
         Some(Repaired::AmplitudeAndDistance) => Some(corrected.distance_m()),
         Some(Repaired::Amplitude) | None => frame.distance_m.as_ref(),
     };
-    let time = time::gains(&plan.time, frame, gains, flags)?;
+    let time = time::gains(&plan.time, frame, prepared.relative_gain, gains, flags)?;
     let law = plan.distance.as_ref();
     let mut sigma = plan
         .sigma

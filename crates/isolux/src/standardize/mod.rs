@@ -9,7 +9,7 @@
 //!
 //! | step | what it removes | how |
 //! |---|---|---|
-//! | time | integration time t, µs | table, `t_ref / t`, or saturation-corrected amplitude times `t_ref / t` |
+//! | time | integration time t, µs | table, `t_ref / t`, saturation-corrected amplitude times `t_ref / t`, or what still pixels share |
 //! | denoise | noise of the distance | smooths the distances (m) that the next step reads |
 //! | distance | radial distance d, m | cubic, spline, `(d / d_ref)²`, or eq. 5 of the paper |
 //! | profile | illumination profile | divides by the gain of the pixel |
@@ -38,6 +38,7 @@ mod stream;
 mod workspace;
 
 pub use crate::choice::{Choice, DenoiseStep, SpecularStep};
+pub use crate::common_factor::{ExposureSurvey, RelativeExposure};
 pub use crate::step_names::{AngleStep, DistanceStep, Method, ProfileStep, SigmaStep, TimeStep};
 pub use ambient_light::AmbientLight;
 pub use error::StandardizeError;

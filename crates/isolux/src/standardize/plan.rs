@@ -14,6 +14,7 @@ use crate::choice::Choice;
 use crate::denoise::DenoiseRule;
 use crate::frame::Channels;
 use crate::specular::SpecularRule;
+use crate::step_names::TimeStep;
 use crate::terms::DistanceLaw;
 use crate::terms::profile::ProfileGains;
 
@@ -79,7 +80,7 @@ impl Plan {
     /// Channels that the chain reads.
     pub(super) fn needed(&self) -> Channels {
         let mut needed = Channels::AMPLITUDE;
-        needed.set(Channels::INTEGRATION_TIME, self.time != TimePlan::None);
+        needed.set(Channels::INTEGRATION_TIME, self.time.reads_time());
         needed.set(Channels::DISTANCE, self.distance.is_some() || self.angle.is_some());
         needed
             | self.saturation.as_ref().map_or(Channels::empty(), SaturationCorrection::channels)
@@ -89,7 +90,8 @@ impl Plan {
 
 /// Puts a note before all others: the planned steps are textbook physics and no calibration.
 fn note_textbook(planner: &mut Planner<'_>) {
-    let physics = planner.steps.iter().filter(|step| step.effect != "denoise");
+    let relative = TimeStep::Relative.name();
+    let physics = planner.steps.iter().filter(|step| step.effect != "denoise" && step.term != relative);
     let terms: Vec<&str> = physics.map(|step| step.term).collect();
     if planner.calibration.is_none() && !terms.is_empty() {
         planner.notes.insert(0, Note::Textbook { terms: terms.join(", ") });

@@ -11,6 +11,8 @@ pub struct Prepared {
     pub(super) mean: Option<MeanDistance>,
     /// Ambient light of the frame, DN/µs; present when the plan corrects by one that drifts.
     pub(super) ambient_dn_per_us: Option<f64>,
+    /// Multiplier of the frame; present when the plan takes out what its still pixels share.
+    pub(super) relative_gain: Option<f32>,
 }
 
 /// The mean distance over the last frames.

@@ -1,6 +1,7 @@
 //! What a plan must know about the recording.
 
 use super::AmbientLight;
+use crate::common_factor::RelativeExposure;
 use crate::frame::{Channels, Lens, Shape};
 
 /// Facts about a recording that decide which steps are possible.
@@ -18,6 +19,9 @@ pub struct RecordingTraits {
     /// Its ambient light, without which the response cannot tell the fill of a pixel from amplitude and distance.
     /// [`AmbientSurvey`](crate::calibrate::AmbientSurvey) estimates it.
     pub ambient_light: Option<AmbientLight>,
+    /// What its frames have relative to each other, which the step `relative` takes out. An
+    /// [`ExposureSurvey`](super::ExposureSurvey) of all frames finds it.
+    pub relative_exposure: Option<RelativeExposure>,
     /// Name of its camera.
     pub camera: Option<String>,
     /// What its amplitudes no longer show, because something upstream has taken it out.
@@ -42,6 +46,7 @@ impl From<Channels> for RecordingTraits {
             lens: None,
             modulation_frequency_hz: None,
             ambient_light: None,
+            relative_exposure: None,
             camera: None,
             already: AlreadyCorrected::default(),
         }

@@ -51,6 +51,13 @@ pub enum Note {
         /// Shape that the profile was fitted on.
         expected: Shape,
     },
+    /// The frames are scaled relative to each other, by what stands still.
+    Relative {
+        /// Frames that could be compared.
+        compared: usize,
+        /// Frames in which nothing stands still: they get no values.
+        without: usize,
+    },
     /// The calibration has no angle term; Lambert's cosine is used.
     Lambert,
     /// `best` leaves out a step, because the amplitudes of the recording no longer show the effect.
@@ -94,6 +101,7 @@ impl Note {
             | Self::FillUnknown
             | Self::NothingToDenoise
             | Self::AlreadyCorrected { .. }
+            | Self::Relative { .. }
             | Self::ProfileFormat { .. } => None,
             Self::OtherCamera { .. } | Self::OtherFrequency { .. } => Some(Advice::Calibrate),
         }
@@ -128,6 +136,14 @@ impl fmt::Display for Note {
                 f,
                 "the frames are {found}, the calibration's `profile` is for {expected}: this step is left out"
             ),
+            Self::Relative { compared, without } => {
+                write!(
+                    f,
+                    "the {compared} frames are comparable with each other, by what stands still in them; their level is \
+                     relative, not that of any integration time"
+                )?;
+                if *without > 0 { write!(f, ". {without} frames in which nothing stands still get no values") } else { Ok(()) }
+            }
             Self::Lambert => f.write_str(
                 "the calibration has no `angle`: Lambert's cosine is textbook physics, not this camera's targets",
             ),
@@ -178,6 +194,12 @@ pub enum PlanError {
         /// The channel.
         channel: &'static str,
     },
+    /// The step `relative` was asked for, but the frames cannot be compared.
+    #[error(
+        "`relative` was asked for, but the frames cannot be compared: in most of them, too little stands still, or they can \
+         be read only once"
+    )]
+    NothingStandsStill,
     /// The response by amplitude and distance was asked for, but the ambient light is unknown.
     #[error("tier `ambient` was asked for, but the ambient light of the recording is not known")]
     AmbientLightUnknown,
@@ -221,6 +243,7 @@ impl PlanError {
             Self::NoiseUnknown => Some(Advice::GiveNoise),
             Self::IntrinsicsMissing | Self::Lens(_) => Some(Advice::GiveIntrinsics),
             Self::AmbientLightUnknown
+            | Self::NothingStandsStill
             | Self::ChannelMissing { .. }
             | Self::ProfileFormat { .. }
             | Self::LensWithoutShape

@@ -11,6 +11,7 @@ use super::recording_traits::RecordingTraits;
 use super::report::{AppliedStep, Note, PlanError};
 use super::standardized::Standardized;
 use super::steps::response::{SaturationCorrection, wants_ambient_light};
+use super::steps::time::TimePlan;
 use super::workspace::Workspace;
 use crate::calibration::Calibration;
 use crate::choice::Choice;
@@ -85,6 +86,14 @@ impl Standardizer {
     pub(super) fn ambient_dn_per_us(&self, frame: usize) -> Option<f64> {
         match &self.plan.saturation {
             Some(SaturationCorrection::Ambient { light, .. }) => Some(light.at(frame)),
+            _ => None,
+        }
+    }
+
+    /// Multiplier of a frame, counted from 0, where the chain takes out what its still pixels share.
+    pub(super) fn relative_gain(&self, frame: usize) -> Option<f32> {
+        match &self.plan.time {
+            TimePlan::Relative(exposure) => Some(exposure.multiplier(frame)),
             _ => None,
         }
     }

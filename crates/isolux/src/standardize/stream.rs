@@ -79,6 +79,7 @@ impl Stream {
     /// differ in shape.
     pub fn prepare(&mut self, frame: &Frame, out: &mut Prepared) -> Result<(), StandardizeError> {
         out.ambient_dn_per_us = self.standardizer.ambient_dn_per_us(self.next);
+        out.relative_gain = self.standardizer.relative_gain(self.next);
         self.next += 1;
         let Some(history) = &mut self.history else {
             out.mean = None;
@@ -103,6 +104,13 @@ impl Stream {
         if let Some(history) = &mut self.history {
             history.reset();
         }
+    }
+
+    /// Forgets the frames so far, and takes the next one as this frame of the recording, counted from 0: where the plan
+    /// knows something of each frame, it is that of this one.
+    pub fn continue_at(&mut self, frame: usize) {
+        self.reset();
+        self.next = frame;
     }
 
     /// Bytes that it has allocated.

@@ -159,6 +159,13 @@ impl DistanceSweep {
             let Widest { frame, spread_m, .. } = widest;
             warnings.push(DistanceWarning::TargetNotFronto { recording: recording.clone(), frame, spread_m });
         }
+        // The bits of NaN: one decay at an unknown time, which may have been another one at each distance.
+        let unknown = |(bits, positions): (&u64, &Positions)| {
+            f64::from_bits(*bits).is_nan() && positions.reliable.len() > 1
+        };
+        if self.times.iter().any(unknown) {
+            warnings.push(DistanceWarning::TimesUnknown { recording: recording.clone() });
+        }
         let (mut decays, mut samples, mut used) = (Vec::new(), Vec::new(), 0);
         for (&bits, positions) in &self.times {
             warnings.extend(positions.moved(recording));

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::advice::Advice;
+use crate::advice::{Advice, RecordingField};
 use crate::calibrate::severity::Severity;
 use crate::calibrate::sweep_fault::SweepFault;
 use crate::terms::response::AmbientError;
@@ -14,6 +14,11 @@ use crate::terms::spline::SplineError;
 pub enum DistanceWarning {
     /// A fault of the recording.
     Fault(SweepFault),
+    /// Distances that were recorded at unknown integration times.
+    TimesUnknown {
+        /// The recording.
+        recording: String,
+    },
     /// Frames whose window is saturated or empty.
     SaturationInWindow {
         /// The recording.
@@ -124,6 +129,7 @@ impl DistanceWarning {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Fault(fault) => fault.severity(),
+            Self::TimesUnknown { .. } => Severity::Poor,
             Self::TargetNotFronto { .. }
             | Self::TargetMoved { .. }
             | Self::TooFewDistances { .. }
@@ -138,6 +144,7 @@ impl DistanceWarning {
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::Fault(fault) => fault.advice(),
+            Self::TimesUnknown { .. } => Some(Advice::WriteField(RecordingField::IntegrationTime)),
             Self::TargetNotFronto { .. } => Some(Advice::Window),
             Self::NoSpline { reason } => reason.advice(),
             _ => None,
@@ -149,6 +156,11 @@ impl fmt::Display for DistanceWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Fault(fault) => fault.fmt(f),
+            Self::TimesUnknown { recording } => write!(
+                f,
+                "{recording}: no law over distance can be told, the integration times are not recorded, and each distance was \
+                 recorded in frames of its own: if the exposure was automatic, any law would fit; if it was constant, state it"
+            ),
             Self::SaturationInWindow { recording, frames } => write!(
                 f,
                 "{recording}: {frames} frames left out, saturated or invalid in more than 5 % of the window: \

@@ -1,6 +1,6 @@
 //! The fitted factors, each normalized to its gauge (1 at its reference).
 
-use super::determine::findings;
+use super::determine::{Fall, Found, findings};
 use super::factor::Factor;
 use super::finding::Finding;
 use super::model::{AngleModel, JointModel, LAW_CURVATURE};
@@ -25,6 +25,8 @@ pub(crate) struct JointFit {
     pub angle_exponent: Option<f64>,
     /// How well the observations determine each fitted factor, and which factors are refused.
     pub findings: Vec<Finding>,
+    /// How far the law falls, also where it is refused; `None` where it was not asked for.
+    pub fall: Option<Fall>,
     /// Number of unknowns, without the surfaces' levels.
     pub unknowns: usize,
     /// Rank of the reduced normal matrix, columns of unit length, eigenvalues above 1e-9 of the largest. Constants,
@@ -66,7 +68,7 @@ impl JointFit {
 }
 
 pub(super) fn conclude(problem: &Problem, robust: Robust) -> JointFit {
-    let (findings, cell_errors) = findings(problem, &robust);
+    let Found { findings, cell_errors, fall } = findings(problem, &robust);
     let model = problem.columns.model;
     let given =
         |factor: Factor| findings.iter().any(|finding| finding.factor == factor && finding.refusal.is_none());
@@ -79,6 +81,7 @@ pub(super) fn conclude(problem: &Problem, robust: Robust) -> JointFit {
             .then(|| robust.coefficients[problem.columns.angle.start])
             .filter(|_| model.angle == AngleModel::Free),
         model,
+        fall,
         unknowns: problem.columns.len,
         rank: rank(&robust),
         surfaces: problem.surfaces(),

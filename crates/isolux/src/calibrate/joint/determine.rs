@@ -25,16 +25,35 @@ use super::robust::{Robust, factorize};
 use super::shared_errors;
 use crate::terms::profile::Places;
 
-/// The findings on every factor that was fitted, and the standard error of ln v in each cell that was seen.
-pub(super) fn findings(problem: &Problem, robust: &Robust) -> (Vec<Finding>, Vec<Option<f64>>) {
+/// How well the observations determine the factors.
+pub(super) struct Found {
+    /// On every factor that was fitted, but the exposures of frames, which nobody asks for.
+    pub(super) findings: Vec<Finding>,
+    /// Standard error of ln v in each cell that was seen.
+    pub(super) cell_errors: Vec<Option<f64>>,
+    /// How far the law falls; `None` without a law.
+    pub(super) fall: Option<Fall>,
+}
+
+/// What the law does from near to far, beside its slope of −2: whether it is determined or refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fall {
+    /// Exponent of the distance, beside −2.
+    pub exponent: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// The findings on all factors.
+pub(super) fn findings(problem: &Problem, robust: &Robust) -> Found {
     let columns = &problem.columns;
     let seen = seen_cells(problem, &robust.weights);
     let knowledge = Knowledge::new(problem, robust);
     let fitted: Vec<Factor> =
         Factor::ALL.into_iter().filter(|&factor| !ranges(columns, factor).is_empty()).collect();
-    let findings = fitted.iter().map(|&factor| knowledge.finding(factor, &fitted, &seen)).collect();
-    let errors = knowledge.cell_errors(&seen);
-    (findings, errors)
+    let wanted = fitted.iter().filter(|factor| **factor != Factor::Exposure);
+    let findings = wanted.map(|&factor| knowledge.finding(factor, &fitted, &seen)).collect();
+    Found { findings, cell_errors: knowledge.cell_errors(&seen), fall: knowledge.fall() }
 }
 
 fn system(columns: &Columns, robust: &Robust) -> DMatrix<f64> {
@@ -54,7 +73,11 @@ fn covariance(problem: &Problem, robust: &Robust) -> Option<DMatrix<f64>> {
 fn ranges(columns: &Columns, factor: Factor) -> Vec<usize> {
     let both = |a: &Range<usize>, b: &Range<usize>| a.clone().chain(b.clone()).collect();
     match factor {
-        Factor::Time => columns.times.clone().collect(),
+        Factor::Time | Factor::Exposure => {
+            let of_frames = columns.model.time.is_some_and(|time| time.of_frames);
+            let mine = of_frames == (factor == Factor::Exposure);
+            columns.times.clone().filter(|_| mine).collect()
+        }
         Factor::Distance => both(&columns.law, &columns.harmonic),
         Factor::Profile => both(&columns.radial, &columns.tensor),
         Factor::Angle => columns.angle.clone().collect(),
@@ -132,6 +155,16 @@ impl<'a> Knowledge<'a> {
         functionals.iter().map(|functional| functional.dot(&(covariance * functional))).collect()
     }
 
+    /// The law from a tenth to nine tenths of the range of ln d: the ends themselves are seen by few.
+    fn fall(&self) -> Option<Fall> {
+        let ([start, end], _) = self.columns.distance?;
+        let [near, far] = [0.1, 0.9].map(|share| start + share * (end - start));
+        let at = |ln_distance: f64| dense(self.columns.len, &self.columns.at_distance(ln_distance.exp()));
+        let functional = (at(far) - at(near)) / (far - near);
+        let variance = self.posterior(std::slice::from_ref(&functional)).first().copied()?;
+        Some(Fall { exponent: functional.dot(&self.robust.coefficients), standard_error: variance.sqrt() })
+    }
+
     /// Variances of linear functions of the factor's coefficients.
     fn variances(&self, functionals: &[DVector<f64>], factor: Factor, with: &[Factor]) -> Vec<f64> {
         let mut used = ranges(self.columns, factor);
@@ -152,7 +185,7 @@ impl<'a> Knowledge<'a> {
         let model = &columns.model;
         let difference = |row: &Row, gauge: &Row| dense(columns.len, row) - dense(columns.len, gauge);
         match factor {
-            Factor::Time => {
+            Factor::Time | Factor::Exposure => {
                 let reference = model.time.map_or(0, |time| time.reference);
                 let unit = |j: usize| DVector::from_fn(columns.len, |i, _| f64::from(u8::from(i == j)));
                 let times = columns.times.clone().filter(|&j| j != reference);

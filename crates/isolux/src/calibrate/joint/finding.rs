@@ -35,7 +35,7 @@ impl Factor {
         match self {
             Self::Distance => Some(Finding::LEAST_SPREAD_LN_DISTANCE),
             Self::Angle => Some(Finding::LEAST_SPREAD_LN_COSINE),
-            Self::Time | Self::Profile => None,
+            Self::Time | Self::Exposure | Self::Profile => None,
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct Observation {
     /// Number of the frame, counted through all recordings. The observations of one frame may share errors: those of
     /// its pose.
     pub frame: u32,
-    /// Which integration time; 0 where [`JointModel::time`] is absent.
+    /// Which integration time, or which of the frames whose time is unknown; 0 where [`JointModel::time`] is absent.
     pub time: u16,
     /// ln of the amplitude (DN), corrected for saturation where that is possible.
     pub ln_amplitude: f32,
@@ -49,13 +49,15 @@ pub(crate) struct JointModel {
     pub smoothness: f64,
 }
 
-/// One factor s_j per integration time.
+/// One factor s_j per integration time, and for each frame whose time is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TimeModel {
     /// Number of integration times.
     pub count: usize,
     /// The one at which s = 0.
     pub reference: usize,
+    /// True where factors are those of frames: then they are no curve over the time.
+    pub of_frames: bool,
 }
 
 /// `ln h = −2 ln(d/d_ref) + Σ c_k B_k(ln d) + w_c cos 4φ + w_s sin 4φ`, slope −2 outside the observed distances.

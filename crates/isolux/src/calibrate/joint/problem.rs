@@ -143,11 +143,13 @@ impl Problem {
 /// Removes a surface's mean: `G −= x̄ x̄ᵀ W`, `b −= x̄ ȳ W`.
 fn eliminate(gram: &mut [f64], moment: &mut [f64], sums: &[f64], weight_sum: f64, response_sum: f64) {
     let unknowns = sums.len();
-    for (i, &sum) in sums.iter().enumerate().filter(|(_, sum)| **sum != 0.0) {
-        let mean = sum / weight_sum;
+    // A surface is seen in some frames only: most levels of frames have no part in it.
+    let seen: Vec<usize> = (0..unknowns).filter(|&i| sums[i] != 0.0).collect();
+    for (count, &i) in seen.iter().enumerate() {
+        let mean = sums[i] / weight_sum;
         moment[i] -= mean * response_sum;
         let line = &mut gram[i * unknowns..][..=i];
-        line.iter_mut().zip(sums).for_each(|(entry, other)| *entry -= mean * other);
+        seen[..=count].iter().for_each(|&j| line[j] -= mean * sums[j]);
     }
 }
 

@@ -48,6 +48,8 @@ pub enum Vary {
     Angle,
     /// The tilt of the target, at each place of the image.
     AngleAtEachPlace,
+    /// Nothing, but the integration times have to be known.
+    RecordedExposure,
     /// Two quantities that changed together: each without the other.
     Apart,
     /// Nothing: more frames, or more light.
@@ -61,6 +63,7 @@ enum Cause {
     OneDistanceAtEachPlace,
     TiltedByDistance,
     TimeByDistance,
+    ExposureByDistance,
 }
 
 impl Refusal {
@@ -68,7 +71,7 @@ impl Refusal {
     #[must_use]
     pub fn vary(&self) -> Option<Vary> {
         match self {
-            Self::NotSeen { factor: Factor::Time } => None,
+            Self::NotSeen { factor: Factor::Time | Factor::Exposure } => None,
             Self::NotSeen { factor: Factor::Distance } => Some(Vary::Distance),
             Self::NotSeen { factor: Factor::Profile } => Some(Vary::Place),
             Self::NotSeen { factor: Factor::Angle } => Some(Vary::Angle),
@@ -76,6 +79,7 @@ impl Refusal {
                 Cause::AlwaysTiltedAlike => Vary::AngleAtEachPlace,
                 Cause::OneDistanceAtEachPlace => Vary::DistanceAtEachPlace,
                 Cause::TiltedByDistance | Cause::TimeByDistance => Vary::Apart,
+                Cause::ExposureByDistance => Vary::RecordedExposure,
             }),
             Self::Uncertain { .. } => Some(Vary::MoreLight),
         }
@@ -85,6 +89,9 @@ impl Refusal {
 impl Cause {
     fn of(factor: Factor, with: &[Factor]) -> Option<Self> {
         let among = |one: Factor| factor == one || with.contains(&one);
+        if among(Factor::Distance) && among(Factor::Exposure) {
+            return Some(Self::ExposureByDistance);
+        }
         match (among(Factor::Profile), among(Factor::Angle), among(Factor::Distance), among(Factor::Time)) {
             (true, true, false, _) => Some(Self::AlwaysTiltedAlike),
             (true, _, true, _) => Some(Self::OneDistanceAtEachPlace),
@@ -102,6 +109,10 @@ impl Cause {
             Self::OneDistanceAtEachPlace => "each place of the image saw one distance",
             Self::TiltedByDistance => "the target was tilted by its distance",
             Self::TimeByDistance => "each distance was recorded with its own integration time",
+            Self::ExposureByDistance => {
+                "the integration times are not recorded, and each distance was recorded in frames of its own: if the exposure \
+                 was automatic, any law would fit"
+            }
         }
     }
 }
@@ -111,7 +122,7 @@ impl fmt::Display for Refusal {
         match self {
             Self::NotSeen { factor } => {
                 let seen = match factor {
-                    Factor::Time => "more than one",
+                    Factor::Time | Factor::Exposure => "more than one",
                     Factor::Distance => "distances that are unlike enough",
                     Factor::Profile => "unlike places of the image",
                     Factor::Angle => "angles that are unlike enough",
@@ -150,6 +161,7 @@ impl fmt::Display for Vary {
             Self::Place => "let a target wander through it",
             Self::Angle => "tilt the target by up to 60°",
             Self::AngleAtEachPlace => "tilt it",
+            Self::RecordedExposure => "record the integration time of each frame, or fix it and state it",
             Self::Apart => "vary the two apart",
             Self::MoreLight => "record more frames, or brighter ones",
         })

@@ -144,13 +144,13 @@ impl Cluster {
         let of_share: Vec<f64> = share.row.iter().map(|sum| sum / share.weight).collect();
         let apart: Vec<f64> = of_share.iter().zip(mean).map(|(share, mean)| share - mean).collect();
         let residual = if goes { 0.0 } else { share.residual * share.weight / left };
-        for i in 0..unknowns {
+        // A surface is seen in some frames only: most levels of frames have no part in it.
+        let seen: Vec<usize> = (0..unknowns).filter(|&i| of_share[i] != 0.0 || mean[i] != 0.0).collect();
+        for (count, &i) in seen.iter().enumerate() {
             self.score[i] += residual * apart[i] - share.residual * mean[i];
             let line = &mut self.gram[i * unknowns..][..=i];
             let (own, away) = (share.weight * of_share[i], factor * apart[i]);
-            for ((entry, other), apart) in line.iter_mut().zip(&of_share).zip(&apart) {
-                *entry += away * apart - own * other;
-            }
+            seen[..=count].iter().for_each(|&j| line[j] += away * apart[j] - own * of_share[j]);
         }
     }
 }

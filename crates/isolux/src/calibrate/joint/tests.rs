@@ -84,7 +84,7 @@ pub(super) fn observe(
 
 pub(super) fn everything() -> JointModel {
     JointModel {
-        time: Some(TimeModel { count: 6, reference: 2 }),
+        time: Some(TimeModel { count: 6, reference: 2, of_frames: false }),
         distance: Some(DistanceModel { reference_m: 0.75, modulation_frequency_hz: Some(FREQUENCY_HZ) }),
         profile: Some(places()),
         angle: AngleModel::Free,
@@ -273,7 +273,7 @@ fn what_cannot_be_fitted_is_an_error_with_numbers() {
         JointModel { time: None, distance: None, profile: None, angle: AngleModel::Absent, smoothness: 1.0 };
     let observations = wall(&mut Random(5));
     assert!(matches!(solve(&observations, &nothing), Err(JointError::Model { .. })));
-    let time = Some(TimeModel { count: 3, reference: 3 });
+    let time = Some(TimeModel { count: 3, reference: 3, of_frames: false });
     assert!(matches!(solve(&observations, &JointModel { time, ..nothing }), Err(JointError::Model { .. })));
     let rough = JointModel { smoothness: 0.0, ..everything() };
     assert!(matches!(solve(&observations, &rough), Err(JointError::Model { .. })));

@@ -10,6 +10,7 @@ use crate::calibrate::CalibrateSettings;
 use crate::calibrate::exposure::{ExposureCurve, MissingTier, fit_response};
 use crate::calibrate::factor_terms::{FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{Factor, JointError, JointFit, JointModel};
+use crate::calibrate::levels::show_one_exposure;
 use crate::calibrate::measure_error::{UnlikeShapes, common_shape};
 use crate::calibration::Calibration;
 use crate::terms::lut::{LutError, RelativeSample};
@@ -30,7 +31,7 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(SceneReport, Vec<SceneWarning>), UnlikeShapes> {
     common_shape(used(scenes).map(|scene| (&*scene.source.recording, scene.shape)))?;
     let mut warnings = about(scenes);
-    let (input, fit) = match solve(settings, scenes) {
+    let (input, fit) = match solve(settings, scenes, &mut warnings) {
         Ok(solved) => solved,
         Err(warning) => {
             warnings.push(warning);
@@ -68,16 +69,33 @@ pub(in crate::calibrate) fn fit(
 fn solve(
     settings: &CalibrateSettings,
     scenes: &[SceneObservations],
+    warnings: &mut Vec<SceneWarning>,
 ) -> Result<(JointInput, JointFit), SceneWarning> {
     let nothing = |reason: JointError| SceneWarning::NothingFitted { reason };
     let input = JointInput::new(settings, scenes)
         .ok_or_else(|| nothing(JointError::TooFew { found: 0, expected: 2 }))?;
     let JointModel { time, distance, profile, .. } = input.model;
     if time.is_none() && distance.is_none() && profile.is_none() {
-        return Err(SceneWarning::NothingVaries);
+        let unknown = input.levels.of_frames();
+        return Err(if unknown { SceneWarning::StillAtUnknownTimes } else { SceneWarning::NothingVaries });
     }
-    let fit = lambert::settle(&input).map_err(nothing)?;
-    Ok((input, fit))
+    let free = lambert::settle(&input).map_err(nothing)?;
+    if !time.is_some_and(|time| time.of_frames) {
+        let Some(shared) = FactorWarning::shared_by_frames(&input.observations, &free) else {
+            return Ok((input, free));
+        };
+        warnings.push(SceneWarning::Factor(shared));
+        if distance.is_none() {
+            return Ok((input, free));
+        }
+        // The stated times are wrong: laws that were fitted with them would be too.
+        let own = input.with_levels_of_frames();
+        let fit = lambert::settle(&own).map_err(nothing)?;
+        return Ok((own, fit));
+    }
+    let one = JointInput { model: JointModel { time: None, ..input.model }, ..input.clone() };
+    let shared = lambert::settle(&one).map_err(nothing)?;
+    Ok(if show_one_exposure(&shared, &free) { (one, shared) } else { (input, free) })
 }
 
 /// Fits the response to still scenes at several times, if no sweep was given.
@@ -186,7 +204,7 @@ fn lut(
         relative_amplitude: s.exp(),
         spread: finding.standard_error,
     };
-    let samples: Vec<RelativeSample> = input.times_us.iter().zip(ln_time).map(sample).collect();
+    let samples: Vec<RelativeSample> = input.levels.times_us.iter().zip(ln_time).map(sample).collect();
     let lut = Lut::of_curve(&samples, settings.reference_time_us())?;
     let fit = FitQuality { points: lut.fit.points, ..fitted.quality() };
     let lut = Lut { fit, ..lut };

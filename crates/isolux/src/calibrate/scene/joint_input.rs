@@ -1,8 +1,10 @@
 //! Observations of all recordings as those of the joint model.
 
+use super::sweep::SceneObservation;
 use super::{MotionFinding, SceneObservations};
 use crate::calibrate::CalibrateSettings;
-use crate::calibrate::joint::{AngleModel, DistanceModel, JointModel, Observation, TimeModel};
+use crate::calibrate::joint::{AngleModel, DistanceModel, JointModel, Observation};
+use crate::calibrate::levels::Levels;
 use crate::numerics::statistics::median;
 use crate::terms::profile::Places;
 
@@ -14,8 +16,8 @@ const UNEVENNESS: f64 = 0.01;
 pub(super) struct JointInput {
     pub(super) observations: Vec<Observation>,
     pub(super) model: JointModel,
-    /// Integration times, µs, increasing; empty where they are unknown.
-    pub(super) times_us: Vec<f64>,
+    /// Their exposures.
+    pub(super) levels: Levels,
 }
 
 impl JointInput {
@@ -23,34 +25,45 @@ impl JointInput {
     pub(super) fn new(settings: &CalibrateSettings, recordings: &[SceneObservations]) -> Option<Self> {
         let first = recordings.iter().find(|recording| !recording.observations.is_empty())?;
         let places = Places::new(first.shape, first.lens.as_ref());
-        let times_us = times_us(recordings);
-        let mut input = Self {
-            observations: Vec::new(),
-            model: model(settings, recordings, &times_us, places),
-            times_us,
-        };
+        let levels = levels(recordings);
+        let mut input =
+            Self { observations: Vec::new(), model: model(settings, recordings, &levels, places), levels };
         let usual = usual_variance(recordings);
         let (mut first_surface, mut first_frame) = (0, 0);
         for recording in recordings {
             let (mut surfaces, mut frames) = (0, 0);
             for seen in &recording.observations {
-                let time = input.times_us.iter().position(|time| *time == seen.integration_time_us);
+                let frame = first_frame + seen.frame;
+                let level = input.levels.of(seen.integration_time_us, frame);
                 let [row, column] = seen.pixel.map(f64::from);
                 input.observations.push(Observation {
                     surface: first_surface + seen.surface,
-                    frame: first_frame + seen.frame,
-                    time: time.unwrap_or(0) as u16,
+                    frame,
+                    time: level.unwrap_or(0),
                     ln_amplitude: seen.ln_amplitude,
                     distance_m: seen.distance_m,
                     place: places.at(row, column).map(|value| value as f32),
                     cosine: seen.cosine,
-                    weight: (usual / variance(seen.sigma)) as f32,
+                    weight: level.map_or(0.0, |_| (usual / variance(seen.sigma)) as f32),
                 });
                 (surfaces, frames) = (surfaces.max(seen.surface + 1), frames.max(seen.frame + 1));
             }
             (first_surface, first_frame) = (first_surface + surfaces, first_frame + frames);
         }
         Some(input)
+    }
+
+    /// The same where nothing is known of the exposures: each frame has a level of its own.
+    pub(super) fn with_levels_of_frames(&self) -> Self {
+        let levels = Levels::new(self.observations.iter().map(|seen| (f64::NAN, seen.frame)));
+        let model = JointModel { time: levels.model(f64::NAN), ..self.model };
+        let mut observations = self.observations.clone();
+        for seen in &mut observations {
+            let level = levels.of(f64::NAN, seen.frame);
+            seen.time = level.unwrap_or(0);
+            seen.weight *= f32::from(u8::from(level.is_some()));
+        }
+        Self { observations, model, levels }
     }
 }
 
@@ -68,16 +81,14 @@ fn usual_variance(recordings: &[SceneObservations]) -> f64 {
 fn model(
     settings: &CalibrateSettings,
     recordings: &[SceneObservations],
-    times_us: &[f64],
+    levels: &Levels,
     places: Places,
 ) -> JointModel {
     let used = recordings.iter().filter(|recording| !recording.observations.is_empty());
     let moved = used.into_iter().any(|recording| recording.motion != MotionFinding::Still);
-    let reference_us = settings.reference_time_us();
-    let away = |index: &usize| (times_us[*index] / reference_us).ln().abs();
-    let reference = (0..times_us.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
     JointModel {
-        time: (times_us.len() > 1).then_some(TimeModel { count: times_us.len(), reference }),
+        // Where nothing else is asked for, levels of frames tell nothing.
+        time: levels.model(settings.reference_time_us()).filter(|time| moved || !time.of_frames),
         distance: moved.then_some(DistanceModel {
             reference_m: settings.reference.distance_m,
             modulation_frequency_hz: settings.modulation_frequency_hz,
@@ -89,12 +100,14 @@ fn model(
     }
 }
 
-/// The times of all observations; none where one of them is unknown: then each recording's time is taken to be
-/// constant, and the surfaces' levels hold it.
-fn times_us(recordings: &[SceneObservations]) -> Vec<f64> {
-    let all = recordings.iter().flat_map(|recording| &recording.observations);
-    let mut times: Vec<f64> = all.map(|seen| seen.integration_time_us).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    if times.iter().all(|time| *time > 0.0 && time.is_finite()) { times } else { Vec::new() }
+/// The exposures of all observations, frames counted through all recordings.
+fn levels(recordings: &[SceneObservations]) -> Levels {
+    let mut first_frame = 0;
+    let of = |recording: &SceneObservations| {
+        let first = first_frame;
+        first_frame += recording.observations.iter().map(|seen| seen.frame + 1).max().unwrap_or(0);
+        let of_frame = move |seen: &SceneObservation| (seen.integration_time_us, first + seen.frame);
+        recording.observations.iter().map(of_frame).collect::<Vec<_>>()
+    };
+    Levels::new(recordings.iter().flat_map(of))
 }

@@ -7,6 +7,7 @@ use crate::advice::Advice;
 use crate::calibrate::exposure::MissingTier;
 use crate::calibrate::factor_terms::FactorWarning;
 use crate::calibrate::joint::JointError;
+use crate::calibrate::severity::Severity;
 use crate::terms::lut::LutError;
 
 /// A warning about scenes, with its numbers.
@@ -32,6 +33,8 @@ pub enum SceneWarning {
     },
     /// A scene in which neither camera nor integration time changes.
     NothingVaries,
+    /// A scene in which the camera stands still, at integration times that are not recorded.
+    StillAtUnknownTimes,
     /// No table could be fitted to the scenes' integration times.
     NoTable {
         /// Why.
@@ -49,12 +52,24 @@ pub enum SceneWarning {
 }
 
 impl SceneWarning {
+    /// How much it weighs.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            // Laws are fitted without the stated times then.
+            Self::Factor(FactorWarning::SharedByFrames { .. }) => Severity::Doubt,
+            // What a scene does not determine is left out.
+            _ => Severity::Note,
+        }
+    }
+
     /// What the user can do about it.
     #[must_use]
     pub fn advice(&self) -> Option<Advice> {
         match self {
             Self::NoTable { reason } => reason.advice(),
             Self::Factor(factor) => factor.advice(),
+            Self::StillAtUnknownTimes => Some(Advice::RecordTimes),
             _ => None,
         }
     }
@@ -73,6 +88,10 @@ impl fmt::Display for SceneWarning {
             Self::NothingVaries => f.write_str(
                 "scenes: no term, neither the camera nor the integration time changes: whatever the amplitudes are, it may \
                  be the surfaces' reflectivity",
+            ),
+            Self::StillAtUnknownTimes => f.write_str(
+                "scenes: no term, the camera stands still, and the integration times are not recorded: what changes from \
+                 frame to frame cannot be told from the exposure",
             ),
             Self::NoTable { reason } => write!(f, "scenes: no lut, {reason}"),
             Self::NoTier(missing) => missing.fmt(f),

@@ -11,6 +11,7 @@ use super::{TargetError, TargetWarning, TargetWindows, flatness, gloss};
 use crate::calibrate::CalibrateSettings;
 use crate::calibrate::factor_terms::{FOLDS, FactorWarning, Fitted, held_out};
 use crate::calibrate::joint::{self, AngleModel, Factor, JointError, JointFit, JointModel, Observation};
+use crate::calibrate::levels::{look_like_one_exposure, show_one_exposure};
 use crate::calibration::{Calibration, Terms};
 use crate::terms::angle::LAMBERT;
 
@@ -28,14 +29,31 @@ pub(in crate::calibrate) fn fit(
 ) -> Result<(TargetReport, Vec<TargetWarning>), TargetError> {
     let mut warnings = Vec::new();
     let mut input = JointInput::new(settings, targets, calibration, &mut warnings)?;
+    // Unknown exposures are left for later: glossy materials would be taken for them.
+    let of_frames = input.model.time.filter(|time| time.of_frames);
+    input.model.time = input.model.time.filter(|time| !time.of_frames);
     let first = joint::solve(&input.observations, &input.model)?;
     input.expect(targets, &first.residuals);
     warnings.extend(targets.iter().filter_map(curved));
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
+    if let Some(time) = of_frames {
+        let shared = joint::solve(&input.observations, &input.model)?;
+        let own = JointModel { time: Some(time), ..input.model };
+        let residuals =
+            input.observations.iter().map(|seen| seen.frame).zip(shared.residuals.iter().copied());
+        let one = look_like_one_exposure(&shared, residuals.filter(|(_, residual)| residual.is_finite()));
+        if !one && !show_one_exposure(&shared, &joint::solve(&input.observations, &own)?) {
+            input.model = own;
+        }
+    }
     input.model.smoothness = smoothness(&input);
     let fit = determined(&input.observations, input.model, &mut warnings)?;
+    if of_frames.is_none() {
+        let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
+        warnings.extend(shared.map(TargetWarning::Factor));
+    }
     for (surface, used) in surfaces.iter_mut().enumerate() {
         let mine = input.observations.iter().zip(&fit.weights).filter(|(o, _)| o.surface as usize == surface);
         used.outliers = mine.filter(|(_, weight)| **weight == 0.0).count();

@@ -57,14 +57,13 @@ fn exponent(input: &JointInput, mine: &[usize]) -> Option<(f64, f64)> {
         let first = mine.first().map(|&i| value(i));
         mine.iter().any(|&i| Some(value(i)) != first)
     };
-    let with_time = varies(&|i| f64::from(input.observations[i].time));
+    let with_time = input.model.time.is_some() && varies(&|i| f64::from(input.observations[i].time));
     let names = ["cosine", "distance", "r²", "time"];
     let count = if with_time { 4 } else { 3 };
     let mut regression = Regression::new(names[..count].iter().copied(), Intercepts::PerGroup);
     for observation in used() {
         let [x, y] = observation.place.map(f64::from);
-        let time =
-            input.times_us.get(usize::from(observation.time)).map_or(0.0, |time| f64::from(*time).ln());
+        let time = input.levels.times_us.get(usize::from(observation.time)).map_or(0.0, |time| time.ln());
         let columns =
             [f64::from(observation.cosine).ln(), f64::from(observation.distance_m).ln(), x * x + y * y, time];
         let row = Row {

@@ -3,7 +3,8 @@
 use super::noise::WindowNoise;
 use super::{TargetError, TargetWarning, TargetWindows};
 use crate::calibrate::CalibrateSettings;
-use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation, TimeModel};
+use crate::calibrate::joint::{AngleModel, DistanceModel, JointError, JointModel, Observation};
+use crate::calibrate::levels::Levels;
 use crate::calibrate::measure_error::common_shape;
 use crate::calibration::{Calibration, REFERENCE_TIME_US};
 use crate::terms::lut::LutAnswer;
@@ -19,7 +20,8 @@ pub(super) struct JointInput {
     pub(super) model: JointModel,
     /// Recording (by number) and label of each surface.
     pub(super) surfaces: Vec<(usize, u8)>,
-    pub(super) times_us: Vec<f32>,
+    /// Their exposures.
+    pub(super) levels: Levels,
 }
 
 impl JointInput {
@@ -36,14 +38,15 @@ impl JointInput {
             reference_us: calibration.reference.integration_time_us.unwrap_or(REFERENCE_TIME_US),
             spline: calibration.terms.spline.as_ref(),
         };
-        let times_us = if known.lut.is_some() { Vec::new() } else { times(targets) };
+        let levels = levels(targets);
+        let levels = if known.lut.is_some() { levels.of_one_time() } else { levels };
         let mut input = Self {
             observations: Vec::new(),
             windows: Vec::new(),
             noise: WindowNoise::fit(targets.iter().flat_map(|target| &target.windows)),
-            model: model(settings, targets, &known, &times_us, places),
+            model: model(settings, targets, &known, &levels, places),
             surfaces: Vec::new(),
-            times_us,
+            levels,
         };
         let mut first_frame = 0;
         for (number, target) in targets.iter().enumerate() {
@@ -52,13 +55,15 @@ impl JointInput {
                 else {
                     continue;
                 };
-                let time = input.times_us.iter().position(|time| *time == window.time_us).unwrap_or(0);
+                let frame = first_frame + window.frame;
+                // Frames that have no level are those that too long a recording has beyond those taken.
+                let Some(time) = input.levels.of(f64::from(window.time_us), frame) else { continue };
                 let surface = input.surface(number, window.label);
                 let [row, column] = window.pixel.map(f64::from);
                 input.observations.push(Observation {
                     surface,
-                    frame: first_frame + window.frame,
-                    time: u16::try_from(time).unwrap_or(u16::MAX),
+                    frame,
+                    time,
                     ln_amplitude: (f64::from(window.ln_amplitude) + correction) as f32,
                     distance_m: window.distance_m,
                     place: places.at(row, column).map(|value| value as f32),
@@ -67,8 +72,7 @@ impl JointInput {
                 });
                 input.windows.push((number, index, correction));
             }
-            let frames = target.source.frames_used + target.source.frames_left_out;
-            first_frame += u32::try_from(frames).unwrap_or(u32::MAX);
+            first_frame += frames(target);
         }
         Ok(input)
     }
@@ -134,20 +138,15 @@ fn model(
     settings: &CalibrateSettings,
     targets: &[TargetWindows],
     known: &Known<'_>,
-    times_us: &[f32],
+    levels: &Levels,
     places: Places,
 ) -> JointModel {
     let windows = || targets.iter().flat_map(|target| &target.windows);
     let has_distance = windows().any(|window| window.distance_m > 0.0);
     let has_angle = windows().any(|window| window.cosine > 0.0);
     let reference_us = settings.reference.integration_time_us.unwrap_or(f64::NAN);
-    let nearest = |a: &usize, b: &usize| {
-        let away = |index: usize| (f64::from(times_us[index]) / reference_us).ln().abs();
-        away(*a).total_cmp(&away(*b))
-    };
-    let reference = (0..times_us.len()).min_by(nearest).unwrap_or(0);
     JointModel {
-        time: (times_us.len() > 1).then_some(TimeModel { count: times_us.len(), reference }),
+        time: levels.model(reference_us),
         distance: (has_distance && known.spline.is_none()).then_some(DistanceModel {
             reference_m: settings.reference.distance_m,
             modulation_frequency_hz: settings.modulation_frequency_hz,
@@ -158,17 +157,24 @@ fn model(
     }
 }
 
-/// The times of all windows, µs, increasing; empty where one of them is unknown: then a recording's time is taken to
-/// be constant, and its materials' brightnesses hold it.
-fn times(targets: &[TargetWindows]) -> Vec<f32> {
-    let mut times: Vec<f32> =
-        targets.iter().flat_map(|target| &target.windows).map(|window| window.time_us).collect();
-    if times.iter().any(|time| time.is_nan()) {
-        return Vec::new();
-    }
-    times.sort_by(f32::total_cmp);
-    times.dedup();
-    times
+/// The exposures of all windows, frames counted through all recordings.
+fn levels(targets: &[TargetWindows]) -> Levels {
+    let mut first_frame = 0;
+    let of = |target: &TargetWindows| {
+        let first = first_frame;
+        first_frame += frames(target);
+        target
+            .windows
+            .iter()
+            .map(move |window| (f64::from(window.time_us), first + window.frame))
+            .collect::<Vec<_>>()
+    };
+    Levels::new(targets.iter().flat_map(of))
+}
+
+/// All frames of a recording.
+fn frames(target: &TargetWindows) -> u32 {
+    u32::try_from(target.source.frames_used + target.source.frames_left_out).unwrap_or(u32::MAX)
 }
 
 /// Image coordinates that all recordings share.

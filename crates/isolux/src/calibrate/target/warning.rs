@@ -61,8 +61,8 @@ impl TargetWarning {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Curved { .. } => Severity::Poor,
-            Self::Factor(FactorWarning::Uncertain { .. }) => Severity::Doubt,
-            Self::Glossy { .. } | Self::Factor(_) => Severity::Note,
+            Self::Factor(factor) => factor.severity(),
+            Self::Glossy { .. } => Severity::Note,
             _ => Severity::Doubt,
         }
     }

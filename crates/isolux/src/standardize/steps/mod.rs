@@ -15,6 +15,7 @@ pub(super) mod angle;
 pub(super) mod denoise;
 pub(super) mod distance;
 pub(super) mod profile;
+mod relative;
 pub(super) mod response;
 pub(super) mod sigma;
 pub(super) mod specular;

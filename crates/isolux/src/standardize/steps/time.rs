@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use super::relative;
 use super::response::{self, PlannedResponse, SaturationCorrection};
 use crate::advice::RecordingKind;
 use crate::calibration::{Calibration, REFERENCE_TIME_US};
+use crate::common_factor::RelativeExposure;
 use crate::frame::{Channels, Frame, IntegrationTime, PixelFlags};
 use crate::standardize::error::StandardizeError;
 use crate::standardize::planner::Planner;
@@ -27,7 +29,16 @@ pub(crate) enum TimePlan {
         reference_us: f64,
         calibrated_us: Option<[f64; 2]>,
     },
+    /// What all still pixels of a frame share is taken out.
+    Relative(RelativeExposure),
     None,
+}
+
+impl TimePlan {
+    /// True where the integration time is read.
+    pub(crate) fn reads_time(&self) -> bool {
+        !matches!(self, Self::None | Self::Relative(_))
+    }
 }
 
 /// Plans the multiplier over the integration time, and the saturation correction before it.
@@ -41,6 +52,11 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
         return Ok((TimePlan::None, None));
     }
     let term = wanted.name();
+    if wanted == TimeStep::Relative {
+        let (exposure, parameters) = relative::plan(planner)?;
+        planner.step("time", term, parameters);
+        return Ok((TimePlan::Relative(exposure), None));
+    }
     let required = planner.is_required(named.is_some());
     if !planner.has(Channels::INTEGRATION_TIME, ["time", term, "integration time"], required)? {
         return Ok((TimePlan::None, None));
@@ -49,7 +65,7 @@ pub(crate) fn plan(planner: &mut Planner<'_>) -> Result<(TimePlan, Option<Satura
         planner.calibration.and_then(|c| c.reference.integration_time_us).unwrap_or(REFERENCE_TIME_US);
     let calibrated_us = planner.calibration.and_then(calibrated_times_us);
     let (plan, correction, parameters) = match wanted {
-        TimeStep::None => return Ok((TimePlan::None, None)),
+        TimeStep::None | TimeStep::Relative => return Ok((TimePlan::None, None)),
         TimeStep::Linear => {
             // Below the calibrated times, pixels are the farther from saturation, and physics holds.
             let up_to = calibrated_us.filter(|_| named.is_none()).map(|[_, longest_us]| [0.0, longest_us]);
@@ -148,13 +164,15 @@ pub(crate) struct Uncovered {
 /// A multiplier, and the flags of the pixels that get it. NaN where there is none.
 type Answer = (f32, PixelFlags);
 
-/// Computes the multipliers, those of single pixels into `memory`. Completes `flags`.
+/// Computes the multipliers, those of single pixels into `memory`. Completes `flags`. `relative_gain` is the frame's
+/// where the plan takes out what still pixels share.
 ///
 /// # Errors
 /// [`StandardizeError::TimeUnknown`] when the plan needs a time and the frame has none.
 pub(crate) fn gains<'a>(
     plan: &TimePlan,
     frame: &Frame,
+    relative_gain: Option<f32>,
     memory: &'a mut Vec<f32>,
     flags: &mut [PixelFlags],
 ) -> Result<TimeGains<'a>, StandardizeError> {
@@ -163,6 +181,14 @@ pub(crate) fn gains<'a>(
     let mut uncovered = Uncovered::default();
     let gain = match (plan, &frame.integration_time_us) {
         (TimePlan::None, _) => TimeGain::Uniform(1.0),
+        (TimePlan::Relative(exposure), _) => {
+            let gain = relative_gain.unwrap_or_else(|| exposure.multiplier(0));
+            if gain.is_nan() {
+                let flag = PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE;
+                flags.iter_mut().for_each(|flags| uncovered.flag(flags, flag));
+            }
+            TimeGain::Uniform(gain)
+        }
         (_, IntegrationTime::Unknown) => return Err(StandardizeError::TimeUnknown),
         (_, IntegrationTime::PerFrame(time_us)) => {
             let (gain, flag) = answer(plan, *time_us);
@@ -202,7 +228,7 @@ fn answer(plan: &TimePlan, time_us: f64) -> Answer {
         return (f32::NAN, PixelFlags::INVALID | PixelFlags::TIME_OUT_OF_RANGE);
     }
     match plan {
-        TimePlan::None => (1.0, PixelFlags::empty()),
+        TimePlan::None | TimePlan::Relative(_) => (1.0, PixelFlags::empty()),
         TimePlan::Linear { reference_us, calibrated_us } => {
             let beyond = calibrated_us.is_some_and(|[from, to]| !(from..=to).contains(&time_us));
             let gain = linear::multiplier(time_us, *reference_us) as f32;
@@ -255,7 +281,7 @@ mod tests {
         let (mut memory, mut flags) = (Vec::new(), [PixelFlags::empty(); 9]);
         let plan = TimePlan::Linear { reference_us: 1000.0, calibrated_us: None };
         flags[4] = PixelFlags::INVALID;
-        let found = gains(&plan, &frame, &mut memory, &mut flags).unwrap();
+        let found = gains(&plan, &frame, None, &mut memory, &mut flags).unwrap();
         assert_eq!(found.uncovered, Uncovered { refused: 1, extrapolated: 0 });
         let mut values = [0.0; 9];
         found.gain.write(0..9, &mut values);
