@@ -38,6 +38,7 @@ pub(in crate::calibrate) fn fit(
     let mut surfaces = gloss::judge(&input, targets, &mut warnings);
     let left_out: Vec<bool> = surfaces.iter().map(|surface| surface.left_out).collect();
     input.leave_out(&left_out);
+    input.model.smoothness = smoothness(&input);
     if let Some(time) = of_frames {
         let shared = joint::solve(&input.observations, &input.model)?;
         let own = JointModel { time: Some(time), ..input.model };
@@ -46,9 +47,9 @@ pub(in crate::calibrate) fn fit(
         let one = look_like_one_exposure(&shared, residuals.filter(|(_, residual)| residual.is_finite()));
         if !one && !show_one_exposure(&shared, &joint::solve(&input.observations, &own)?) {
             input.model = own;
+            input.model.smoothness = smoothness(&input);
         }
     }
-    input.model.smoothness = smoothness(&input);
     let fit = determined(&input.observations, input.model, &mut warnings)?;
     if of_frames.is_none() {
         let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
