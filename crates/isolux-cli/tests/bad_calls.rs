@@ -107,7 +107,7 @@ fn sweeps_that_determine_nothing() {
         &sandbox,
         &[
             (
-                &format!("{sweep} rec"),
+                &format!("{sweep} rec --reference-time-us 8200"),
                 1,
                 &["rec", "8200 µs is outside", "1000 to 4000 µs", "--reference-time-us"],
             ),

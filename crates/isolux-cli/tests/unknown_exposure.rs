@@ -119,7 +119,7 @@ fn frames_that_were_stretched_one_by_one_are_noticed() {
         stretched(&mut amplitude, full, step);
         let sandbox = sandbox(&channels((dtype, amplitude), distance), "{}");
         let span = format!("every frame spans exactly 0 to {full}");
-        sandbox.run("info rec").done().remarks(SCALED).remarks(&span);
+        sandbox.run("info rec").done().prints(SCALED).prints(&span);
         sandbox.run("standardize rec -o out").done().remarks(SCALED);
         let told = finding(&sandbox, "scaled_by_frame").unwrap_or_else(|| panic!("{name}"));
         assert_eq!((&told["largest_dn"], &told["frames"]), (&full.into(), &20.into()), "{name}");
@@ -137,13 +137,13 @@ fn holes_and_a_saturation_code_are_no_stretch() {
     let sandbox = sandbox(&channels(("<u2", amplitude), distance), "{\"saturated_amplitude\": 65535}");
     assert!(findings(&sandbox).iter().all(|finding| finding["finding"] != "scaled_by_frame"));
     let info = sandbox.run("info rec").done();
-    assert!(!info.stderr.contains(SCALED) && !info.stderr.contains(CHANGED), "{info:?}");
+    assert!(!info.stdout.contains(SCALED) && !info.stdout.contains(CHANGED), "{info:?}");
 }
 
 #[test]
 fn an_exposure_that_changed_is_told_with_its_range() {
     let sandbox = sandbox(&still(&automatic()), "{}");
-    sandbox.run("info rec").done().remarks(CHANGED).remarks("the integration times are not recorded");
+    sandbox.run("info rec").done().prints(CHANGED).prints("the integration times are not recorded");
     let told = finding(&sandbox, "exposure_changed").unwrap();
     // exp(±0.7) about the median frame, whose own gain is within a few per cent of 1.
     for (end, expected) in [("least", (-0.7f64).exp()), ("largest", 0.7f64.exp())] {
@@ -157,7 +157,7 @@ fn an_exposure_that_changed_is_told_with_its_range() {
 fn jumps_and_stated_times_that_do_not_explain_them_are_told() {
     let jump: Vec<f64> = (0..30).map(|frame| if frame < 17 { 1.0 } else { 0.6 }).collect();
     let one = sandbox(&still(&jump), "{\"integration_time_us\": 500}");
-    one.run("info rec").done().remarks(CHANGED).remarks("states one integration time");
+    one.run("info rec").done().prints(CHANGED).prints("states one integration time");
     assert_eq!(finding(&one, "exposure_changed").unwrap()["claim"], "constant");
     // Recorded times that alternate, and a gain that does not follow them.
     let times_us: Vec<f64> = (0..40).map(|frame| if frame % 4 < 2 { 500.0 } else { 1000.0 }).collect();
@@ -169,7 +169,7 @@ fn jumps_and_stated_times_that_do_not_explain_them_are_told() {
     let gains: Vec<f64> = times_us.iter().map(|time_us| time_us / 800.0).collect();
     let fine = sandbox(&with_times(still(&gains), times_us), "{}");
     assert_eq!(finding(&fine, "exposure_changed"), None);
-    assert!(!fine.run("info rec").done().stderr.contains(CHANGED));
+    assert!(!fine.run("info rec").done().stdout.contains(CHANGED));
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn movement_is_no_exposure() {
     let (amplitude, distance) = recorded(&[1.0; 20], 3);
     let sandbox = sandbox(&channels(("<u2", amplitude), distance), "{}");
     assert_eq!(finding(&sandbox, "exposure_changed"), None);
-    assert!(!sandbox.run("info rec").done().stderr.contains(CHANGED));
+    assert!(!sandbox.run("info rec").done().stdout.contains(CHANGED));
     sandbox.run("standardize rec --time relative -o out").refused(1, &["too little stands still"]);
 }
 
@@ -241,5 +241,5 @@ fn no_law_over_distance_comes_from_a_board_at_unknown_times() {
     }
     // Whoever states one time is believed.
     sandbox.described("stated", &board(), &format!("{{\"integration_time_us\": 500, {INTRINSICS}}}"));
-    sandbox.run("calibrate --distance-sweep stated -o S.json").done();
+    sandbox.run("calibrate --distance-sweep stated -o S.json --reference-distance-m 1.5").done();
 }

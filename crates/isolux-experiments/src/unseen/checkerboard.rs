@@ -2,11 +2,12 @@
 //! distance, tilt and place, in frames that the calibration has not seen.
 
 use isolux::calibrate::{CalibrateSettings, label_windows};
+use isolux::calibration::REFERENCE_TIME_US;
 use isolux::standardize::{AngleStep, DenoiseStep, DistanceStep, ProfileStep};
 use isolux::statistics::{SIGMA_PER_MAD, median, median_absolute_deviation};
 use isolux::{
-    Calibration, Channels, Choice, DenoiseRule, Frame, Intrinsics, PixelFlags, Plane, RecordingTraits, Shape,
-    Standardizer,
+    Calibration, Channels, Choice, DenoiseRule, Frame, IntegrationTime, Intrinsics, PixelFlags, Plane,
+    RecordingTraits, Shape, Standardizer,
 };
 use isolux_io::RecordingInfo;
 use isolux_pipeline::{CalibrationSources, FramesInMemory, SourceFacts, Unobserved, calibrate};
@@ -106,13 +107,20 @@ fn calibrate_without(
     fold: usize,
 ) -> Result<Calibration, ExperimentError> {
     let others = frames.iter().enumerate().filter(|(index, _)| index % FOLDS != fold);
+    let others: Vec<Frame> = others.map(|(_, frame)| with_constant_time(frame)).collect();
     let shape = frames.first().map_or(Shape::new(0, 0), Frame::shape);
     let info = RecordingInfo { intrinsics: Some(protocol.intrinsics.into()), ..RecordingInfo::default() };
-    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET;
+    let channels = Channels::AMPLITUDE | Channels::DISTANCE | Channels::TARGET | Channels::INTEGRATION_TIME;
     let facts = SourceFacts { info, ..SourceFacts::new("checkerboard", shape, channels) };
-    let others = FramesInMemory::new(facts, others.map(|(_, frame)| frame));
+    let others = FramesInMemory::new(facts, &others);
     let sources = CalibrationSources { targets: vec![Box::new(others)], ..CalibrationSources::default() };
     Ok(calibrate(&CalibrateSettings::default(), None, sources, &Unobserved)?.0)
+}
+
+/// The times are not recorded. All frames together show that they are equal (d⁻², and frames that agree), some of them
+/// alone need not.
+fn with_constant_time(frame: &Frame) -> Frame {
+    Frame { integration_time_us: IntegrationTime::PerFrame(REFERENCE_TIME_US), ..frame.clone() }
 }
 
 /// Indices of the windows of 5×5 pixels inside the squares, all of whose pixels are measured, far enough.

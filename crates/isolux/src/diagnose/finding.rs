@@ -10,6 +10,9 @@ use crate::advice::Advice;
 use crate::common_factor::{ExposureCourse, SpannedFrames};
 use crate::inspect::Suspicion;
 
+/// Exponents of d that are called "about -2".
+const ABOUT: f64 = 0.1;
+
 /// One statement about the recording; [`Display`](fmt::Display) gives a sentence.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "finding", rename_all = "snake_case")]
@@ -36,6 +39,8 @@ pub enum Finding {
     },
     /// The amplitude falls with d⁻²: not corrected for the distance.
     DistanceRaw {
+        /// The exponent.
+        exponent: f64,
         /// What shows that all compared pixels are of one material.
         evidence: Evidence,
     },
@@ -220,12 +225,17 @@ impl fmt::Display for Finding {
                 "The amplitude goes with t^{exponent:.2}, which no sensor does: corrected too far, a curve, or integration \
                  times that are not those of the frames."
             ),
-            Self::DistanceRaw { evidence } => {
+            Self::DistanceRaw { exponent, evidence } if (exponent + 2.0).abs() < ABOUT => {
                 write!(
                     f,
                     "The amplitude of {evidence} falls with distance about as d^-2: not corrected for it."
                 )
             }
+            Self::DistanceRaw { exponent, evidence } => write!(
+                f,
+                "The amplitude of {evidence} falls as d^{exponent:.2}, not quite as d^-2: not corrected for distance; lights \
+                 beside the lens, tilt and gloss bend the law."
+            ),
             Self::DistanceCorrected { evidence } => {
                 write!(
                     f,

@@ -97,7 +97,7 @@ fn alike(first: Estimate, second: Estimate) -> bool {
 fn of_distance(distance: &Effect, gamma_known: bool) -> Option<Finding> {
     let (exponent, evidence) = (distance.exponent.value, distance.evidence);
     match distance.state {
-        State::Present => Some(Finding::DistanceRaw { evidence }),
+        State::Present => Some(Finding::DistanceRaw { exponent, evidence }),
         State::Removed => Some(Finding::DistanceCorrected { evidence }),
         State::Reduced => (!gamma_known).then_some(Finding::DistancePartly { exponent, evidence }),
         State::Exaggerated | State::Reversed => Some(Finding::DistanceOdd { exponent }),

