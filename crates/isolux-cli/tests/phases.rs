@@ -52,7 +52,7 @@ impl Take {
     }
 
     fn amplitude(&self, row: usize, column: usize) -> f64 {
-        let bright = (row / 8 + column / 8) % 2 == 0;
+        let bright = (row / 8 + column / 8).is_multiple_of(2);
         self.gain * if bright { 0.9 } else { 0.4 } / (self.distance_m)(row, column).powi(2)
     }
 

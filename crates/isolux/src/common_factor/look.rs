@@ -102,7 +102,7 @@ impl Look {
 
     /// True where a sample has the same integration time in both, or none in either.
     pub(crate) fn same_time(&self, other: &Self, sample: usize) -> bool {
-        let unknown = |time: f32| !(time > 0.0);
+        let unknown = |time: f32| time.is_nan() || time <= 0.0;
         match (&self.time, &other.time) {
             (LookTime::Unknown, LookTime::Unknown) => true,
             (LookTime::Frame(one), LookTime::Frame(other)) => {

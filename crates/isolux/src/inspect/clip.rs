@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(clip((0..2000).map(|step| [100.0 + (step % 3) as f32; 4])), None);
         assert_eq!(clip((0..2000).map(|_| [900.0, 400.0, 100.0, 600.0])), None);
         // Pixels that do not work are 0.
-        let dead = |step: usize| if step % 20 == 0 { [0.0; 4] } else { [100.0 + step as f32; 4] };
+        let dead = |step: usize| if step.is_multiple_of(20) { [0.0; 4] } else { [100.0 + step as f32; 4] };
         assert_eq!(clip((0..2000).map(dead)), None);
         assert_eq!(clip(std::iter::empty()), None);
     }

@@ -51,7 +51,8 @@ pub(in crate::calibrate) fn fit(
         }
     }
     let fit = determined(&input.observations, input.model, &mut warnings)?;
-    if of_frames.is_none() {
+    // Without angles, each frame's own tilt is what its residuals share.
+    if of_frames.is_none() && fit.model.angle != AngleModel::Absent {
         let shared = FactorWarning::shared_by_frames(&input.observations, &fit);
         warnings.extend(shared.map(TargetWarning::Factor));
     }

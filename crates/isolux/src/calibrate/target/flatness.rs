@@ -26,12 +26,15 @@ const LEAST_WINDOWS: usize = 20;
 /// distances' noise allows, which hundreds of windows tell to a few per cent.
 const FLATTER: f64 = 1.25;
 
+/// Row, column and distance (m) of a window.
+type Point = (usize, usize, f64);
+
 /// Whether the targets of a recording are flat with other focal lengths and curved with its own. A curved target is
 /// curved with all of them. A lens without focal lengths is taken at its word.
 pub(super) fn curved(target: &TargetWindows) -> Option<Curved> {
     let (lens, shape) = (target.lens.as_ref()?, target.shape?);
     lens.scaled(1.0)?;
-    let mut faces: BTreeMap<(u32, u8), Vec<(usize, usize, f64)>> = BTreeMap::new();
+    let mut faces: BTreeMap<(u32, u8), Vec<Point>> = BTreeMap::new();
     for window in target.windows.iter().filter(|window| window.measured_m > 0.0) {
         let [row, column] = window.pixel.map(usize::from);
         let face = faces.entry((window.frame, window.label)).or_default();
@@ -56,7 +59,7 @@ pub(super) fn curved(target: &TargetWindows) -> Option<Curved> {
 /// Root mean square deviation, along the rays, of points (row, column, distance) from the plane that fits them best, m.
 /// On a plane, 1/d is linear in the direction of the ray. Distances across the plane would do no good: with long focal
 /// lengths, all planes that hold the line of sight fit.
-fn from_plane(face: &[(usize, usize, f64)], lens: &Lens, shape: Shape) -> f64 {
+fn from_plane(face: &[Point], lens: &Lens, shape: Shape) -> f64 {
     // Scaled, the image may reach beyond the domain of a distortion: then the deviation is NaN, and not the least.
     let ray = |row: usize, column: usize| {
         Vector3::from(lens.ray(shape, row, column).unwrap_or([f64::NAN; 3])).normalize()

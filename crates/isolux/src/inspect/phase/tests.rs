@@ -16,7 +16,7 @@ type Scene = fn(usize, usize) -> (f64, f64);
 
 /// A checkered wall that goes away to the right.
 fn wall(row: usize, column: usize) -> (f64, f64) {
-    let bright = (row / 8 + column / 8) % 2 == 0;
+    let bright = (row / 8 + column / 8).is_multiple_of(2);
     (0.6 + 0.07 * column as f64, if bright { 0.8 } else { 0.3 })
 }
 
@@ -25,7 +25,7 @@ fn room(row: usize, column: usize) -> (f64, f64) {
     let floor_m = 24.0 / (row as f64 + 1.0);
     let (block_row, block_column) = (row / 5, column / 6);
     let random = splitmix64((block_row * 100 + block_column) as u64);
-    if random % 3 == 0 {
+    if random.is_multiple_of(3) {
         let share = |shift: u32| ((random >> shift) & 0xff) as f64 / 255.0;
         return (floor_m.min(3.5) * (0.5 + 0.5 * share(8)), 0.1 + 0.8 * share(16));
     }
