@@ -103,7 +103,7 @@ fn codes_of_the_amplitude_are_told_and_once_named_are_saturated() {
         channels[0].1 = Array { descr: descr.to_owned(), ..channels[0].1.clone() };
         let saturated = |at: usize| at % PIXELS < 50;
         for (at, value) in channels[0].1.values.iter_mut().enumerate() {
-            *value = if saturated(at) { code } else { value.min(2500.0) };
+            *value = if saturated(at) { code } else { (0.4 * *value).round() };
         }
         let field = format!("\"saturated_amplitude\": {code}");
         told(&described(&channels, "{}"), &[&field, "1.63 % of the amplitudes are exactly"]);
