@@ -2,7 +2,7 @@
 
 use isolux::inspect::{Claims, Inspector, Suspicion};
 use isolux::{Channels, Frame, Plane, ShapeError};
-use isolux_io::recording::{ChannelInfo, DistanceUnit, ModulationFrequency};
+use isolux_io::recording::{ChannelInfo, DistanceKind, DistanceUnit, ModulationFrequency};
 
 use crate::error::PipelineError;
 use crate::observer::Observer;
@@ -36,6 +36,9 @@ pub fn inspect(
     let frames = frames(count, facts.shape.pixels());
     let stored = source.stored_channels();
     let mut inspector = Inspector::new(facts.shape, claims(&facts, &stored));
+    // Codes are equal before a lens is applied to them, not after.
+    let depths = facts.info.distance_kind == Some(DistanceKind::Z)
+        && stored.iter().any(|channel| channel.name == DISTANCE);
     let (mut frame, mut distances) = (Frame::new(facts.shape), Plane::filled(facts.shape, f32::NAN));
     let wanted = Channels::AMPLITUDE
         | Channels::DISTANCE
@@ -51,7 +54,7 @@ pub fn inspect(
                 pushed.map_err(|error| PipelineError::frame(&facts.name, index)(error.into()))
             };
             fits(inspector.push(&frame))?;
-            if stored.iter().any(|channel| channel.name == DISTANCE) {
+            if depths {
                 source.read_plane(DISTANCE, index, &mut distances)?;
                 fits(inspector.push_stored_distances(&frame, &distances))?;
             }

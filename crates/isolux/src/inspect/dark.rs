@@ -1,7 +1,7 @@
 //! Is there anything but noise?
 
 use super::suspicion::Suspicion;
-use crate::frame::Frame;
+use crate::frame::{Frame, PixelFlags};
 use crate::numerics::statistics::{SIGMA_PER_MAD, median, quantile};
 
 /// Where nine tenths of the image have a ratio of amplitude to noise below this, it shows nothing. For pure noise (Rayleigh's
@@ -22,11 +22,13 @@ pub(super) struct Dark {
 
 impl Dark {
     pub(super) fn push(&mut self, frame: &Frame, stride: usize) {
-        let values: Vec<f32> = frame.counted_amplitudes().collect();
-        let width = frame.shape().width.max(1);
+        let (values, flags, width) =
+            (frame.amplitude.values(), frame.flags.values(), frame.shape().width.max(1));
+        let usable = |at: usize| !flags[at].intersects(PixelFlags::INVALID | PixelFlags::SATURATED);
         let pairs = (0..values.len()).step_by(stride).filter(|at| at % width + 1 < width);
-        let pairs = pairs.map(|at| [f64::from(values[at]), f64::from(values[at + 1])]);
-        let pairs: Vec<[f64; 2]> = pairs.filter(|pair| pair.iter().all(|value| value.is_finite())).collect();
+        let pairs = pairs.filter(|&at| usable(at) && usable(at + 1));
+        let pairs: Vec<[f64; 2]> =
+            pairs.map(|at| [f64::from(values[at]), f64::from(values[at + 1])]).collect();
         self.ratios.extend(signal_to_noise(&pairs));
     }
 

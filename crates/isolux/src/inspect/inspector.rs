@@ -74,7 +74,7 @@ impl Inspector {
         Ok(())
     }
 
-    /// Takes in the distances of a frame as they are stored: codes are equal before a lens is applied to them, not after.
+    /// Takes in the distances of a frame as they are stored, where they are depths: others follow from their unit.
     /// `frame` tells which of them are distances.
     ///
     /// # Errors
@@ -87,6 +87,17 @@ impl Inspector {
         Ok(())
     }
 
+    /// The distances in the unit in which they are stored; whole numbers where they are all but whole.
+    fn as_stored(&self) -> Vec<f32> {
+        let Some(metres) = self.claims.metres_per_unit else { return Vec::new() };
+        let stored = |&distance_m: &f32| {
+            let value = (f64::from(distance_m) / metres) as f32;
+            let whole = value.round();
+            if (value - whole).abs() <= 4.0 * f32::EPSILON * whole { whole } else { value }
+        };
+        self.distances_m.iter().map(stored).collect()
+    }
+
     /// An odd number, so that cameras which alternate something by columns are seen whole.
     fn stride(&self) -> usize {
         self.shape.pixels().div_ceil(SAMPLED_PIXELS) | 1
@@ -96,6 +107,9 @@ impl Inspector {
     #[must_use]
     pub fn finish(mut self) -> Vec<Suspicion> {
         self.amplitudes.sort_unstable_by(f32::total_cmp);
+        if self.stored_distances.is_empty() {
+            self.stored_distances = self.as_stored();
+        }
         self.stored_distances.sort_unstable_by(f32::total_cmp);
         let standardized = self.claims.standardized.then_some(Suspicion::Standardized);
         let distances = distances::suspicion(&self.distances_m, &self.claims);
