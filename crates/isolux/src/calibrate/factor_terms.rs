@@ -1,5 +1,6 @@
 //! The factors of the joint model: how well they predict, and how they become terms of the calibration.
 
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
@@ -32,12 +33,11 @@ pub(super) fn held_out(observations: &[Observation], model: &JointModel, folds: 
         let Ok(fit) = joint::solve(&training, model) else { continue };
         // Outliers of the whole fit do not test the law; their share is reported separately.
         let cutoff = TUKEY_CUTOFF * fit.sigma;
-        let error = |&index: &usize| (observations[index].frame, fit.residuals[index]);
-        let mut left: Vec<(u32, f64)> = tested.iter().map(error).collect();
-        if model.time.is_some_and(|time| time.of_frames) {
-            take_out_levels(&mut left);
+        let mut errors: Vec<f64> = tested.iter().map(|&index| fit.residuals[index]).collect();
+        if model.time.is_some() {
+            take_out_unknown_levels(observations, &training, &tested, &mut errors);
         }
-        let errors = tested.iter().zip(left).map(|(&index, (_, error))| {
+        let errors = tested.iter().zip(errors).map(|(&index, error)| {
             let scale = f64::from(observations[index].weight).sqrt();
             (error, error.abs() * scale < cutoff)
         });
@@ -48,17 +48,24 @@ pub(super) fn held_out(observations: &[Observation], model: &JointModel, folds: 
     (squares.1 > 0.0).then(|| (squares.0 / squares.1).sqrt())
 }
 
-/// Nothing is known of the exposure of a frame that was left out: its median error is that.
-fn take_out_levels(errors: &mut [(u32, f64)]) {
-    let mut order: Vec<usize> = (0..errors.len()).collect();
-    order.sort_by_key(|&index| errors[index].0);
-    for frame in
-        order.chunk_by(|a, b| errors[*a].0 == errors[*b].0).map(<[usize]>::to_vec).collect::<Vec<_>>()
-    {
+/// Nothing is known of an exposure that only frames have which were left out: their median error is that.
+fn take_out_unknown_levels(
+    observations: &[Observation],
+    training: &[Observation],
+    tested: &[usize],
+    errors: &mut [f64],
+) {
+    let known: HashSet<u16> =
+        training.iter().filter(|seen| seen.weight > 0.0).map(|seen| seen.time).collect();
+    let mut of_times: BTreeMap<u16, Vec<usize>> = BTreeMap::new();
+    for (at, &index) in tested.iter().enumerate() {
+        of_times.entry(observations[index].time).or_default().push(at);
+    }
+    for places in of_times.into_iter().filter(|(time, _)| !known.contains(time)).map(|(_, places)| places) {
         let mut finite: Vec<f64> =
-            frame.iter().map(|&i| errors[i].1).filter(|error| error.is_finite()).collect();
+            places.iter().map(|&at| errors[at]).filter(|error| error.is_finite()).collect();
         let level = median(&mut finite).unwrap_or(0.0);
-        frame.iter().for_each(|&index| errors[index].1 -= level);
+        places.iter().for_each(|&at| errors[at] -= level);
     }
 }
 
