@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Array, Channels, Sandbox};
+use common::{Array, Channels, Noise, Sandbox};
 use serde_json::Value;
 
 const HEIGHT: usize = 48;
@@ -16,19 +16,6 @@ const INTRINSICS: &str = "\"intrinsics\": {\"fx\": 60.0, \"fy\": 60.0, \"cx\": 3
 /// Words of the remark about a common factor, and of that about stretched frames.
 const CHANGED: &str = "all still pixels share a factor from frame to frame";
 const SCALED: &str = "scaled frame by frame";
-
-/// Normal numbers: the sum of twelve uniform ones, of a generator that needs no library.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// A slanted wall of three materials. The pattern and the distances shift by `moved` columns with each frame.
 fn wall(frame: usize, pixel: usize, moved: usize) -> (f64, f64) {

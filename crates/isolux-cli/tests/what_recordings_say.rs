@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Array, Channels, Sandbox, calibration, mask, standardize};
+use common::{Array, Channels, Noise, Sandbox, calibration, mask, standardize};
 
 const HEIGHT: usize = 48;
 const WIDTH: usize = 64;
@@ -13,19 +13,6 @@ const PIXELS: usize = HEIGHT * WIDTH;
 const FRAMES: usize = 4;
 /// What `info` writes above its suspicions.
 const DOUBTS: &str = "what looks wrong";
-
-/// Normal numbers: the sum of twelve uniform ones, of a generator that needs no library.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// A checkered wall that goes away to the right, from 0.4 to 3 m; every frame in the order of its pixels.
 fn distances_m() -> Vec<f64> {

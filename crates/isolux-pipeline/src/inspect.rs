@@ -18,7 +18,7 @@ const MOST_FRAMES: usize = 16;
 const FEWEST_FRAMES: usize = 4;
 /// Pixels that are looked at where that allows more than the fewest frames.
 const PIXELS: usize = 1 << 21;
-/// Frames that follow each other, so that differences between them show the noise.
+/// Frames that follow each other: what stands still is seen in both.
 const RUN: usize = 2;
 
 /// Looks at the first and some later frames of a recording. Nothing is read of a source of unknown length, which may be
@@ -90,7 +90,6 @@ fn claims(facts: &SourceFacts, stored: &[ChannelInfo]) -> Claims {
         range_m: frequency.map(|frequency| frequency.unambiguous_range_m()),
         distance_unit_stated: info.distance_unit.is_some(),
         metres_per_unit: usual.map(|usual| info.distance_unit.unwrap_or(usual).metres()),
-        amplitude_from_phase_samples: facts.amplitude_from_phase_samples,
         phase_convention: info.phase_convention.unwrap_or_default(),
         distance_from_phases: has("phase_samples") && !has(DISTANCE),
         unwrapped_range_m: frequency.filter(|_| unwrapped).map(|frequency| frequency.unambiguous_range_m()),

@@ -2,6 +2,7 @@
 #![allow(dead_code, unused_imports, unreachable_pub, reason = "each test binary uses its own part")]
 
 mod calls;
+mod noise;
 #[path = "../../../isolux-io/tests/common/npy.rs"]
 mod npy;
 mod readers;
@@ -19,6 +20,7 @@ use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 
 pub use calls::{calibration, refused, sandbox};
+pub use noise::Noise;
 pub use npy::{Array, header};
 pub use readers::{READERS, refused_by};
 #[cfg(target_os = "linux")]

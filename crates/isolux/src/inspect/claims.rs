@@ -13,8 +13,6 @@ pub struct Claims {
     pub distance_unit_stated: bool,
     /// Metres for one unit of the stored distances, as they are read.
     pub metres_per_unit: Option<f64>,
-    /// True where the amplitude is computed from the phase samples.
-    pub amplitude_from_phase_samples: bool,
     /// Column and row of the principal point, pixels.
     pub principal_point: Option<[f64; 2]>,
     /// Order and sign by which the phase samples were read.
